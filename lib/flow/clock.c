@@ -5,8 +5,9 @@
 
 const char *wh_clock_kind_name(wh_clock_kind_t kind) {
     static const char *const names[WH_CLOCK_KINDS] = {
-        "process_begins", "process_ends", "process_cut", "taken", "clean_begins", "clean_ends",
-        "pump_begins",    "pump_ends",    "unprocessed", "late",  "clean_missed", "clean_cut"};
+        "process_begins", "process_ends", "process_cut",  "taken",        "clean_begins", "clean_ends",
+        "pump_begins",    "pump_ends",    "unprocessed",  "late",         "clean_missed", "clean_cut",
+        "port_begins",    "port_ends",    "port_timeout", "carrier_came", "carrier_went"};
     return (unsigned)kind < WH_CLOCK_KINDS ? names[kind] : "unknown";
 }
 

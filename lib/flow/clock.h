@@ -64,10 +64,15 @@ typedef enum {
     WH_CLOCK_UNPROCESSED,  /* a wafer has left whose process never began; `us` is how long it lay there */
     WH_CLOCK_LATE,         /* a stay was beyond the window; `us` is by how much */
     WH_CLOCK_CLEAN_MISSED, /* a wafer came before the end of a clean, or in place of one; `us` was left */
-    WH_CLOCK_CLEAN_CUT     /* a wafer was lifted from a clean around it; `us` is how long that ran */
+    WH_CLOCK_CLEAN_CUT,    /* a wafer was lifted from a clean around it; `us` is how long that ran */
+    WH_CLOCK_PORT_BEGINS,  /* a step of a load port, and the others as in load_port.h */
+    WH_CLOCK_PORT_ENDS,
+    WH_CLOCK_PORT_TIMEOUT,
+    WH_CLOCK_CARRIER_CAME,
+    WH_CLOCK_CARRIER_WENT
 } wh_clock_kind_t;
 
-#define WH_CLOCK_KINDS 12
+#define WH_CLOCK_KINDS 17
 
 typedef struct {
     wh_clock_kind_t kind;

@@ -79,6 +79,11 @@ wh_real_t wh_errors_draw_process(const wh_errors_t *errors, const wh_trial_t *tr
     return errors->given ? 0 : wh_spread_draw(&errors->process, trial, 0x410, station);
 }
 
+wh_real_t wh_errors_draw_port(const wh_errors_t *errors, const wh_trial_t *trial, size_t station,
+                              size_t step) {
+    return errors->given ? 0 : wh_spread_draw(&errors->port, trial, 0x411, station * 32 + step);
+}
+
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial) {
     return errors->given ? errors->given->vacuum
                          : wh_real_abs(wh_spread_draw(&errors->vacuum, trial, 0x400, 0));

@@ -58,6 +58,7 @@ typedef struct {
     wh_beam_spreads_t beams[WH_BEAMS];
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
     wh_spread_t process;             /* of each station's process, longer or shorter, s */
+    wh_spread_t port;                /* of each step of each load port, likewise */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
     wh_spread_t debounce;            /* added to that of the vacuum sensors */
 } wh_errors_t;
@@ -79,6 +80,10 @@ void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, siz
 
 /* By how much the station's process is longer, s; 0 if the errors are given. */
 wh_real_t wh_errors_draw_process(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
+
+/* By how much a step of the load port is longer, s; 0 if the errors are given. Steps are below 32. */
+wh_real_t wh_errors_draw_port(const wh_errors_t *errors, const wh_trial_t *trial, size_t station,
+                              size_t step);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
 wh_real_t wh_errors_draw_debounce(const wh_errors_t *errors, const wh_trial_t *trial);
 

@@ -77,15 +77,30 @@ const wh_reader_field_t wh_layout_fault_of_edge_sensor[] = {
      "stuck: the part of its line that seems to be covered, 0 to 1; late: s by which they are", true},
     END};
 const wh_reader_field_t wh_layout_fault_station_stuck[] = {
-    {"kind", "\"station_stuck\"", "a process, clean or pump does not go on", true},
+    {"kind", "\"station_stuck\"", "a process, clean, pump or load port does not go on", true},
     OF_EVERY_FAULT,
     STATION,
     END};
 const wh_reader_field_t wh_layout_fault_station_slow[] = {
-    {"kind", "\"station_slow\"", "a process, clean or pump takes longer", true},
+    {"kind", "\"station_slow\"", "a process, clean, pump or load port takes longer", true},
     OF_EVERY_FAULT,
     STATION,
     {"value", NUMBER, "how many times as long, 1 to 1000", true},
+    END};
+#define E84_STEP                                                                                             \
+    { "step", "\"tp1\"|\"tp2\"|\"tp3\"|\"tp4\"|\"tp5\"", "which one, by its timer", true }
+const wh_reader_field_t wh_layout_fault_e84_stuck[] = {
+    {"kind", "\"e84_stuck\"", "a step of a load port's handshake does not end", true},
+    OF_EVERY_FAULT,
+    STATION,
+    E84_STEP,
+    END};
+const wh_reader_field_t wh_layout_fault_e84_late[] = {
+    {"kind", "\"e84_late\"", "a step of a load port's handshake takes longer", true},
+    OF_EVERY_FAULT,
+    STATION,
+    E84_STEP,
+    {"value", NUMBER, "s by which it does", true},
     END};
 const wh_reader_field_t wh_layout_fault_missing[] = {
     {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};
@@ -143,6 +158,8 @@ const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
     [WH_FAULT_EDGE_SENSOR_LATE] = wh_layout_fault_of_edge_sensor,
     [WH_FAULT_STATION_STUCK] = wh_layout_fault_station_stuck,
     [WH_FAULT_STATION_SLOW] = wh_layout_fault_station_slow,
+    [WH_FAULT_E84_STUCK] = wh_layout_fault_e84_stuck,
+    [WH_FAULT_E84_LATE] = wh_layout_fault_e84_late,
 };
 
 /* ---------------------------------------------------------------------------------------------- studies */
@@ -189,6 +206,8 @@ const wh_reader_field_t wh_layout_timing_fields[] = {
     {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false, WIDTH(WH_ERRORS_MOST_S)},
     {"debounce", NUMBER, "s by which vacuum sensors tell a turn later", false, WIDTH(WH_ERRORS_MOST_S)},
     {"process", NUMBER, "s by which a station's process is longer or shorter", false,
+     WIDTH(WH_ERRORS_MOST_PROCESS_S)},
+    {"port", NUMBER, "s by which each step of a load port is longer or shorter", false,
      WIDTH(WH_ERRORS_MOST_PROCESS_S)},
     {"shape", WORD, "how they are spread", false, SHAPE},
     END};

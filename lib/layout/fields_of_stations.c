@@ -69,6 +69,7 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"window", NUMBER, "s: the longest stay after the process", false},
     {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},
     {"pump", "waferhand.lock", "makes it a load lock", false},
+    {"port", "waferhand.port", "of a load port: its steps and their times", false},
     {"state", "\"vacuum\"|\"atmosphere\"", "of a load lock when a run begins; atmosphere", false},
     {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock: where the one robot comes", false},
     END};
@@ -78,6 +79,62 @@ const wh_reader_field_t wh_layout_clean_fields[] = {
     {"idle", NUMBER, "s without a wafer, above 0", false},
     {"seconds", NUMBER, "s: how long it takes, above 0", true},
     {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside; true", false},
+    END};
+
+/* The longest time of a load port's step, s. */
+#define LONGEST 86400
+
+const wh_reader_field_t wh_layout_port_fields[] = {
+    {"state", "\"absent\"|\"placed\"|\"clamped\"|\"docked\"|\"open\"|\"mapped\"", "when a run begins", false,
+     .otherwise = "open with a carrier, else absent"},
+    {"place", NUMBER, "s by hand until a carrier that comes is placed", false, APART(0, LONGEST, 0)},
+    {"remove", NUMBER, "s by hand until a carrier that goes is gone", false, APART(0, LONGEST, 0)},
+    {"clamp", NUMBER, "s to clamp the carrier", false, APART(0, LONGEST, 1)},
+    {"dock", NUMBER, "s to dock it", false, APART(0, LONGEST, 3)},
+    {"open", NUMBER, "s to open its door", false, APART(0, LONGEST, 5)},
+    {"map", NUMBER, "s to map its slots", false, APART(0, LONGEST, 4)},
+    {"close", NUMBER, "s to shut its door", false, APART(0, LONGEST, FOLLOWS), .otherwise = "as open"},
+    {"undock", NUMBER, "s to move it out again", false, APART(0, LONGEST, FOLLOWS), .otherwise = "as dock"},
+    {"unclamp", NUMBER, "s to let go of it", false, APART(0, LONGEST, FOLLOWS), .otherwise = "as clamp"},
+    {"goes", "\"placed\"|\"clamped\"|\"docked\"|\"open\"|\"mapped\"",
+     "where a carrier that has come goes by itself", false, .otherwise = "mapped"},
+    {"e84", "waferhand.e84", "a vehicle brings and takes carriers, by this handshake", false,
+     .otherwise = "by hand"},
+    {"mapper", "waferhand.mapper", "how its mapper judges", false, .otherwise = "as MAP"},
+    END};
+
+const wh_reader_field_t wh_layout_mapper_fields[] = {
+    {"crossed", NUMBER, "0.01 to 0.5: a wafer farther from its slot's plane is crossed, a share of the pitch",
+     false, APART(0.01, 0.5, FOLLOWS), .otherwise = "that of `mapping`"},
+    {"level", NUMBER, "mm: a wafer that its beams see so far apart in height is crossed; 0: half the pitch",
+     false, APART(0, 1000, FOLLOWS), .otherwise = "that of `mapping`"},
+    {"protruded", NUMBER, "mm: a wafer farther out towards the arm is protruded", false,
+     APART(0, 1000, FOLLOWS), .otherwise = "that of `mapping`"},
+    {"thinnest", NUMBER, "mm: a wafer below it is thin", false, APART(0, 100, FOLLOWS),
+     .otherwise = "that of `mapping`"},
+    {"thickest", NUMBER, "mm: a wafer above it is thick", false, APART(0.01, 1000, FOLLOWS),
+     .otherwise = "that of `mapping`"},
+    END};
+
+const wh_reader_field_t wh_layout_e84_fields[] = {
+    {"tp1", NUMBER, "s: the longest from L_REQ or U_REQ to TR_REQ", false, APART(0.001, LONGEST, 2)},
+    {"tp2", NUMBER, "s: the longest from READY to BUSY", false, APART(0.001, LONGEST, 2)},
+    {"tp3", NUMBER, "s: the longest from BUSY until the carrier is there, or gone", false,
+     APART(0.001, LONGEST, 60)},
+    {"tp4", NUMBER, "s: the longest until BUSY is off", false, APART(0.001, LONGEST, 60)},
+    {"tp5", NUMBER, "s: the longest from READY off to VALID off", false, APART(0.001, LONGEST, 2)},
+    {"t1", NUMBER, "s that the step of TP1 takes", false, APART(0, LONGEST, 0.5)},
+    {"t2", NUMBER, "s that the step of TP2 takes", false, APART(0, LONGEST, 0.5)},
+    {"t3", NUMBER, "s that the step of TP3 takes", false, APART(0, LONGEST, 10)},
+    {"t4", NUMBER, "s that the step of TP4 takes", false, APART(0, LONGEST, 5)},
+    {"t5", NUMBER, "s that the step of TP5 takes", false, APART(0, LONGEST, 0.5)},
+    END};
+
+const wh_reader_field_t wh_layout_carrier_fields[] = {
+    {"wafers", "integer|integer[]", "how many, from slot 1 on, or their slots; each is called CARRIER.SLOT",
+     false, .otherwise = "0"},
+    {"at", "string", "the load port where it is when a run begins, by name", false,
+     .otherwise = "it is still to come"},
     END};
 
 #define PUMP_TIMES                                                                                           \

@@ -83,7 +83,8 @@ int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station) {
 }
 
 const char *wh_layout_station_kind(const wh_layout_station_t *station) {
-    return wh_layout_station_words[station->prealigner ? 1 : station->foup ? 2 : station->flipper ? 3 : 0];
+    const int usual = station->foup ? 2 : station->flipper ? 3 : 0;
+    return wh_layout_station_words[station->prealigner ? 1 : station->port ? WH_LAYOUT_LOAD_PORT : usual];
 }
 
 int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot) {

@@ -91,6 +91,10 @@ typedef struct {
 /* The times of a station: times.h. */
 typedef struct wh_layout_times wh_layout_times_t;
 
+/* A load port, and a carrier that comes to it: ports.h. */
+typedef struct wh_layout_port wh_layout_port_t;
+typedef struct wh_layout_carrier wh_layout_carrier_t;
+
 /* How one of several robots comes to a station. */
 typedef struct {
     bool serves;      /* the layout says so, or the robot alone decides by its reach */
@@ -185,12 +189,14 @@ typedef struct {
     wh_layout_approach_t *by;
     int32_t robot;
     const wh_layout_times_t *times; /* null: it takes no time */
+    wh_layout_port_t *port;         /* null: it is no load port */
 } wh_layout_station_t;
 
 typedef struct {
     char name[WH_NAME_SIZE];
     int32_t station, slot; /* slot from 1 */
     double thickness;      /* as MAP measures it, mm; all else goes by that of the layout's wafers */
+    int32_t carrier;       /* its number from 1, with which it comes; 0: it is there when a run begins */
 } wh_layout_wafer_t;
 
 /* How MAP judges what its beams see: mcs/slot_codes.h. */
@@ -261,6 +267,8 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
+    size_t carrier_count;
+    wh_layout_carrier_t *carriers; /* sorted by name */
     /* ----------------------------------------------------------------------------------- faces and grips */
     /* Wafers may come to lie face down: cell.thickness is theirs, and simulators have grips (grips.h). */
     bool has_faces;

@@ -45,6 +45,8 @@ extern const wh_reader_field_t wh_layout_fault_of_probe[];
 extern const wh_reader_field_t wh_layout_fault_of_edge_sensor[];
 extern const wh_reader_field_t wh_layout_fault_station_stuck[];
 extern const wh_reader_field_t wh_layout_fault_station_slow[];
+extern const wh_reader_field_t wh_layout_fault_e84_stuck[];
+extern const wh_reader_field_t wh_layout_fault_e84_late[];
 extern const wh_reader_field_t wh_layout_fault_missing[];
 extern const wh_reader_field_t wh_layout_fault_doubled[];
 extern const wh_reader_field_t wh_layout_fault_crossed[];

@@ -1,6 +1,7 @@
 #include "../math/hash.h"
 #include "grips.h"
 #include "layout_fields.h"
+#include "ports.h"
 #include "times.h"
 #include "words.h"
 
@@ -302,6 +303,6 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
                                 wh_hash_text(hash, "beams"));
     }
     hash = hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
-    hash = wh_layout_hash_times(layout, hash);
+    hash = wh_layout_hash_ports(layout, wh_layout_hash_times(layout, hash));
     return layout->patterns ? wh_hash_word(wh_hash_text(hash, "patterns"), layout->patterns_hash) : hash;
 }

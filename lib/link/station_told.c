@@ -17,6 +17,11 @@ void wh_station_told_write(const wh_station_event_record_t *event, char text[WH_
                    " us=%" PRId64,
                    wh_clock_kind_name(of->kind), event->station, of->slot == WH_FLOW_NONE ? -1 : of->slot + 1,
                    of->wafer, sides[of->side], of->at_us, of->us);
+    if (of->kind >= WH_CLOCK_PORT_BEGINS) {
+        const size_t length = strlen(text);
+        (void)snprintf(text + length, WH_STATION_TOLD_BYTES - length, " step=%s carrier=%s",
+                       wh_load_port_step_name(event->step), event->carrier);
+    }
 }
 
 /* The number of a kind or of a side; their counts: there is none of that name. */
@@ -34,6 +39,15 @@ static size_t find_side(const char *name) {
         ++side;
     }
     return side;
+}
+
+static size_t find_step(const char *name) {
+    size_t step = 0;
+    while (step < WH_LOAD_PORT_STEPS &&
+           strcmp(wh_load_port_step_name((wh_load_port_step_t)step), name) != 0) {
+        ++step;
+    }
+    return step;
 }
 
 /* Skips `name=` and the value behind it, and a blank; returns the value, or null: it is not there. */
@@ -78,6 +92,9 @@ static bool is_within(const wh_station_event_record_t *event, size_t station_cou
 
 enum { STATION, SLOT, WAFER, AT, TOOK, NUMBERS };
 
+/* Room for the words. */
+enum { KIND_BYTES = 20, SIDE_BYTES = 12 };
+
 /* The numbers from `first` on, `count` of them, as they stand in the text. */
 static bool take_numbers(const char **at, size_t first, size_t count, int64_t numbers[NUMBERS]) {
     static const char *const names[NUMBERS] = {"station", "slot", "wafer", "at", "us"};
@@ -88,14 +105,37 @@ static bool take_numbers(const char **at, size_t first, size_t count, int64_t nu
     return is_good;
 }
 
+/* The step of a load port, and behind it the carrier's name up to the end. */
+static bool take_step(const char **at, wh_station_event_record_t *event) {
+    static const char name[] = "carrier=";
+    char word[12];
+    if (!take_word(at, "step", word, sizeof word) || strncmp(*at, name, sizeof name - 1) != 0) {
+        return false;
+    }
+    const size_t step = find_step(word);
+    const char *carrier = *at + sizeof name - 1;
+    if (step == WH_LOAD_PORT_STEPS || strlen(carrier) >= sizeof event->carrier) {
+        return false;
+    }
+    event->step = (wh_load_port_step_t)step;
+    (void)snprintf(event->carrier, sizeof event->carrier, "%s", carrier);
+    return true;
+}
+
+/* The words of the text, and the numbers between them. */
+static bool take_all(const char **at, char kind[KIND_BYTES], char side[SIDE_BYTES],
+                     int64_t numbers[NUMBERS]) {
+    return take_word(at, "kind", kind, KIND_BYTES) && take_numbers(at, STATION, 3, numbers) &&
+           take_word(at, "side", side, SIDE_BYTES) && take_numbers(at, AT, 2, numbers);
+}
+
 bool wh_station_told_read(const char *text, size_t station_count, size_t wafer_count,
                           wh_station_event_record_t *event) {
-    char kind[20];
-    char side[12];
+    char kind[KIND_BYTES];
+    char side[SIDE_BYTES];
     int64_t numbers[NUMBERS];
     memset(event, 0, sizeof *event);
-    if (!take_word(&text, "kind", kind, sizeof kind) || !take_numbers(&text, STATION, 3, numbers) ||
-        !take_word(&text, "side", side, sizeof side) || !take_numbers(&text, AT, 2, numbers)) {
+    if (!take_all(&text, kind, side, numbers)) {
         return false;
     }
     const size_t number = find_kind(kind);
@@ -111,5 +151,6 @@ bool wh_station_told_read(const char *text, size_t station_count, size_t wafer_c
                   .wafer = (int32_t)numbers[WAFER],
                   .at_us = numbers[AT],
                   .us = numbers[TOOK]}};
-    return is_within(event, station_count, wafer_count) && numbers[SLOT] != 0;
+    const bool is_whole = number < WH_CLOCK_PORT_BEGINS || take_step(&text, event);
+    return is_whole && is_within(event, station_count, wafer_count) && numbers[SLOT] != 0;
 }

@@ -4,14 +4,16 @@
  *     kind=process_begins station=3 slot=1 wafer=0 side=both at=5770000 us=60000000
  *
  * station, slot and wafer are numbers, slots from 1, the others from 0; -1: none. `at` and `us` are as in
- * wh_clock_event_t.
+ * wh_clock_event_t. For a load port the step and the carrier's name follow, the name up to the end:
+ *
+ *     kind=port_ends station=3 slot=-1 wafer=-1 side=both at=5770000 us=3000000 step=dock carrier=C1
  */
 #ifndef WH_LINK_STATION_TOLD_H
 #define WH_LINK_STATION_TOLD_H
 
 #include "../record/record.h"
 
-#define WH_STATION_TOLD_BYTES 200
+#define WH_STATION_TOLD_BYTES 280
 
 void wh_station_told_write(const wh_station_event_record_t *event, char text[WH_STATION_TOLD_BYTES]);
 

@@ -44,6 +44,9 @@ static bool has_arrived(const wh_mcs_t *mcs, const wh_awaited_t *awaited) {
     if (awaited->kind == WH_AWAITED_LOCK) {
         return !wh_mcs_is_pumping(mcs, awaited->index);
     }
+    if (awaited->kind == WH_AWAITED_PORT) {
+        return wh_mcs_does_port_stand(mcs, awaited->index);
+    }
     return is_gripper_there(mcs, awaited->index);
 }
 
@@ -63,7 +66,8 @@ void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh
     } kinds[] = {{"door", WH_AWAITED_DOOR, machine->door_count},
                  {"gripper", WH_AWAITED_GRIPPER, machine->gripper_count},
                  {"station", WH_AWAITED_STATION, mcs->layout->station_count},
-                 {"lock", WH_AWAITED_LOCK, mcs->layout->station_count}};
+                 {"lock", WH_AWAITED_LOCK, mcs->layout->station_count},
+                 {"port", WH_AWAITED_PORT, mcs->layout->station_count}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
         if (lua_getfield(L, -1, kinds[i].field) != LUA_TNIL) {
             awaited->kind = kinds[i].kind;

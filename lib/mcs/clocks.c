@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../script/wh_module_values.h"
+#include "ports.h"
 
 /* --------------------------------------------------------------------------------------------- setting up */
 
@@ -135,6 +136,15 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
                       state->utime, &teller);
         look(clocks, i, state, WH_NONE);
     }
+    if (clocks->ports) {
+        wh_ports_hear(clocks->ports, state, us);
+    }
+}
+
+void wh_mcs_clocks_send(wh_mcs_t *mcs) {
+    if (mcs->clocks && mcs->clocks->ports) {
+        wh_ports_send(mcs->clocks->ports, &mcs->command);
+    }
 }
 
 int64_t wh_mcs_clocks_quiet(const wh_mcs_t *mcs) {
@@ -144,6 +154,9 @@ int64_t wh_mcs_clocks_quiet(const wh_mcs_t *mcs) {
         const wh_clocked_t *of = &clocks->of[i];
         us = fmin(us, wh_clock_quiet_us(&of->of, &clocks->clocks[i], &clocks->places[of->first],
                                         clocks->state->utime));
+    }
+    if (clocks && clocks->ports) {
+        us = fmin(us, wh_ports_quiet_us(clocks->ports, clocks->state->utime));
     }
     const double slices = ceil(us / (double)mcs->layout->slice_us) - 1;
     return slices < 1e15 ? (int64_t)fmax(slices, 0) : INT64_MAX;
@@ -158,6 +171,9 @@ void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices) {
         wh_clock_pass(&of->of, &clocks->clocks[i], &clocks->places[of->first], (double)us, 1,
                       clocks->state->utime + us, &nobody);
     }
+    if (clocks && clocks->ports) {
+        wh_ports_pass(clocks->ports, us, clocks->state->utime + us);
+    }
     if (clocks) {
         clocks->state->seq += slices;
         clocks->state->utime += us;
@@ -166,7 +182,7 @@ void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices) {
 
 void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     const wh_layout_t *real = mcs->real;
-    if (!wh_layout_takes_time(real)) {
+    if (!wh_layout_takes_time(real) && !wh_layout_has_ports(real)) {
         return;
     }
     struct wh_clocks *clocks = lua_memory(L, sizeof *clocks);
@@ -176,6 +192,7 @@ void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     number_stations(clocks, real);
     make_state(L, clocks);
     mcs->clocks = clocks;
+    clocks->ports = wh_ports_begin(L, mcs);
     wh_clocks_place_all(clocks, &mcs->state);
     wh_mcs_listen(mcs, hear, clocks);
     wh_decisions_measured(mcs->wanted.decisions, "stations that take time");
@@ -195,6 +212,10 @@ static int32_t number_of(const wh_mcs_t *mcs, int32_t station) {
 
 bool wh_mcs_is_station_idle(const wh_mcs_t *mcs, int32_t station) {
     const int32_t number = number_of(mcs, station);
+    const int32_t port = wh_ports_find(mcs, station);
+    if (port != WH_NONE) {
+        return wh_ports_is_idle(mcs->clocks->ports, port);
+    }
     if (number == WH_NONE) {
         return true;
     }
@@ -219,7 +240,13 @@ const char *wh_mcs_station_word(const wh_mcs_t *mcs, int32_t station, double *le
                                 [WH_CLOCK_CLEANING] = 3,
                                 [WH_CLOCK_PROCESSING] = 4};
     const int32_t number = number_of(mcs, station);
+    const int32_t port = wh_ports_find(mcs, station);
     *left_us = 0;
+    if (port != WH_NONE) {
+        const wh_load_port_t *clock = &mcs->clocks->ports->ports[port].clock;
+        *left_us = clock->left_us;
+        return wh_load_port_state_name(clock->is);
+    }
     if (number == WH_NONE) {
         return NULL;
     }
@@ -307,6 +334,11 @@ static int read_rest(lua_State *L) {
     const int32_t number = number_of(mcs, station);
     if (wh_mcs_is_station_idle(mcs, station)) {
         return 0;
+    }
+    const int32_t port = wh_ports_find(mcs, station);
+    if (port != WH_NONE) {
+        lua_pushnumber(L, wh_ports_rest_us(mcs->clocks->ports, port, mcs->clocks->state->utime) / 1e6);
+        return 1;
     }
     const wh_clocked_t *of = &mcs->clocks->of[number];
     double rest_us = mcs->clocks->clocks[number].left_us;

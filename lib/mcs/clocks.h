@@ -38,6 +38,7 @@ struct wh_clocks {
     wh_clock_t *clocks;       /* by number; within the state's block, as the next two */
     wh_clock_place_t *places; /* by place */
     wh_clock_seen_t *seen;    /* by place */
+    struct wh_ports *ports;   /* load ports, see ports.h; null: there are none */
 };
 
 /* The user of wh_clocks_tell. */
@@ -48,6 +49,9 @@ typedef struct {
 
 /* Keeps the event, tells it, and judges what it says: a wh_clock_teller_t. */
 void wh_clocks_tell(void *user, const wh_clock_event_t *event);
+
+/* States what should be so, as an expectation at the line of the command that runs, or of the last one. */
+void wh_clocks_imply(const wh_mcs_t *mcs, const char *text, bool ok);
 
 /* Looks where all wafers lie. */
 void wh_clocks_place_all(struct wh_clocks *clocks, const wh_state_t *state);
@@ -91,7 +95,13 @@ void wh_mcs_set_down(const wh_mcs_t *mcs, int32_t station, bool is_down);
 
 bool wh_mcs_is_pumping(const wh_mcs_t *mcs, int32_t station);
 
-/* At the end of a run: stays beyond windows of wafers that still lie there. */
+/* True if the station is no load port, or no step runs there. */
+bool wh_mcs_does_port_stand(const wh_mcs_t *mcs, int32_t station);
+
+/* Adds to the command that goes out next the wafers that come and go with carriers. */
+void wh_mcs_clocks_send(wh_mcs_t *mcs);
+
+/* At the end of a run: stays beyond windows of wafers that still lie there, and handshakes that failed. */
 void wh_mcs_judge_stays(const wh_mcs_t *mcs);
 
 /* The state of a station in one word: the process or the clean that runs in any of its slots, or the pumping.

@@ -3,6 +3,7 @@
 
 #include "clocks.h"
 #include "flow_played.h"
+#include "ports.h"
 
 #define TEXT_BYTES 500
 
@@ -23,8 +24,7 @@ static int line_of(const wh_mcs_t *mcs) {
     return record->command_count > 0 ? record->commands[record->command_count - 1].line : 0;
 }
 
-static void imply(const struct wh_clocks *clocks, const char *text, bool ok) {
-    const wh_mcs_t *mcs = clocks->mcs;
+void wh_clocks_imply(const wh_mcs_t *mcs, const char *text, bool ok) {
     wh_record_add_implied(mcs->recorder.record, line_of(mcs), text, ok);
     if (!ok) {
         wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
@@ -45,7 +45,7 @@ static void judge_stay(const struct wh_clocks *clocks, const wh_clocked_t *of, i
         snprintf(text + length, sizeof text - (size_t)length, "; it stayed %.10g s, %.10g s too long",
                  stay_us / 1e6, over_us / 1e6);
     }
-    imply(clocks, text, over_us <= 0);
+    wh_clocks_imply(clocks->mcs, text, over_us <= 0);
 }
 
 static void judge_cut(const struct wh_clocks *clocks, const wh_clocked_t *of, const wh_clock_event_t *event) {
@@ -57,7 +57,7 @@ static void judge_cut(const struct wh_clocks *clocks, const wh_clocked_t *of, co
              is_clean ? "clean around" : "process of", wafer_name(clocks, event->wafer),
              station_name(clocks, of), lies ? "came to lie badly" : "was taken", (double)event->us / 1e6,
              (double)(is_clean ? of->of.clean_us : wh_clock_process_us(&of->of, place)) / 1e6);
-    imply(clocks, text, false);
+    wh_clocks_imply(clocks->mcs, text, false);
 }
 
 static void judge_unprocessed(const struct wh_clocks *clocks, const wh_clocked_t *of,
@@ -69,7 +69,7 @@ static void judge_unprocessed(const struct wh_clocks *clocks, const wh_clocked_t
     snprintf(text, sizeof text,
              "the process of %s in %s comes to its end; the wafer was taken before it began",
              wafer_name(clocks, event->wafer), station_name(clocks, of));
-    imply(clocks, text, false);
+    wh_clocks_imply(clocks->mcs, text, false);
 }
 
 static void judge_missed(const struct wh_clocks *clocks, const wh_clocked_t *of,
@@ -79,7 +79,7 @@ static void judge_missed(const struct wh_clocks *clocks, const wh_clocked_t *of,
     snprintf(text, sizeof text, "%s comes into %s slot %d when it is clean; it came %s, %.10g s",
              wafer_name(clocks, event->wafer), station_name(clocks, of), (int)event->slot + 1,
              runs ? "before the end of a clean" : "in place of a clean", (double)event->us / 1e6);
-    imply(clocks, text, false);
+    wh_clocks_imply(clocks->mcs, text, false);
 }
 
 void wh_clocks_tell(void *user, const wh_clock_event_t *event) {
@@ -122,4 +122,5 @@ void wh_mcs_judge_stays(const wh_mcs_t *mcs) {
             judge_place(clocks, &clocks->of[i], slot);
         }
     }
+    wh_ports_judge(clocks ? clocks->ports : NULL);
 }

@@ -9,6 +9,7 @@
 #include "../math/trig.h"
 #include "../text/utf8.h"
 #include "clocks.h"
+#include "ports.h"
 
 typedef struct {
     char *text; /* of WH_MCS_DESCRIPTION_BYTES */
@@ -138,6 +139,23 @@ static void put_doors(description_t *to, const wh_mcs_t *mcs) {
     }
 }
 
+/* The step that runs at a load port, and its carrier. */
+static void put_port(description_t *to, const wh_mcs_t *mcs, size_t s) {
+    const int32_t number = wh_ports_find(mcs, (int32_t)s);
+    const wh_load_port_now_t *port = number == WH_NONE ? NULL : &mcs->clocks->ports->ports[number];
+    if (port && port->clock.step != WH_LOAD_PORT_STANDS) {
+        put(to, " ");
+        put_name(to, mcs->layout->stations[s].name);
+        put(to, ".does=%s", wh_load_port_step_name(port->clock.step));
+    }
+    if (port && port->carrier != WH_NONE) {
+        put(to, " ");
+        put_name(to, mcs->layout->stations[s].name);
+        put(to, ".carrier=");
+        put_name(to, mcs->layout->carriers[port->carrier].name);
+    }
+}
+
 /* A process, clean or pump that runs with its rest in s; and a load lock's pressure. */
 static void put_stations(description_t *to, const wh_mcs_t *mcs) {
     for (size_t s = 0; mcs->clocks && s < mcs->layout->station_count; ++s) {
@@ -155,6 +173,7 @@ static void put_stations(description_t *to, const wh_mcs_t *mcs) {
             put(to, ".left");
             put_value(to, left_us / 1e6);
         }
+        put_port(to, mcs, s);
         if (pressure) {
             put(to, " ");
             put_name(to, mcs->layout->stations[s].name);

@@ -6,7 +6,9 @@
 #include "../reading/layout_read.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "clocks.h"
 #include "native.h"
+#include "ports.h"
 
 static int64_t next_slice(const wh_mcs_t *mcs) {
     return mcs->track.slice + 1;
@@ -192,6 +194,20 @@ static void put_alarms(FILE *out, const wh_mcs_t *mcs) {
     }
 }
 
+/* Tells the carriers that were still to come. */
+static void put_carriers(FILE *out, const wh_mcs_t *mcs) {
+    const struct wh_ports *ports = mcs->clocks ? mcs->clocks->ports : NULL;
+    for (size_t c = 0; ports && c < mcs->layout->carrier_count; ++c) {
+        const wh_carrier_now_t *carrier = &ports->carriers[c];
+        if (carrier->is_due) {
+            put_comma(out);
+            fprintf(out, "carrier %s (to %s at %.10g s)", mcs->layout->carriers[c].name,
+                    mcs->layout->stations[ports->of[carrier->port].station].name,
+                    (double)carrier->comes_us / 1e6);
+        }
+    }
+}
+
 char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
     char *text = NULL;
     size_t size = 0;
@@ -200,6 +216,7 @@ char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
         put_unbegun(out, mcs, i);
     }
     put_alarms(out, mcs);
+    put_carriers(out, mcs);
     if (mcs->stop.at_slice != INT64_MAX) {
         put_comma(out);
         fprintf(out, "a STOP (stop_in, at %.10g s)",
@@ -235,10 +252,10 @@ static int clear_fault(lua_State *L) {
     return 0;
 }
 
-/* native.fault_kinds(): their names. */
+/* native.fault_kinds(): the names of those on purpose. */
 static int list_kinds(lua_State *L) {
-    lua_createtable(L, WH_FAULT_KINDS, 0);
-    for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
+    lua_createtable(L, WH_FAULT_WAFER_PLACED, 0);
+    for (int kind = 0; kind < WH_FAULT_WAFER_PLACED; ++kind) {
         lua_pushstring(L, wh_fault_name((wh_fault_kind_t)kind));
         lua_rawseti(L, -2, kind + 1);
     }

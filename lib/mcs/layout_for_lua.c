@@ -2,6 +2,7 @@
 #include "../flow/clock.h"
 #include "../layout/axes.h"
 #include "../layout/layout_fields.h"
+#include "../layout/ports.h"
 #include "../layout/times.h"
 #include "../layout/words.h"
 #include "../script/wh_module_values.h"
@@ -51,10 +52,12 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
     lua_setfield(L, -2, "doors");
 }
 
-/* takes_time; and of a load lock sides: by robot where it comes; door_sides: by door. */
+/* takes_time; is_port, of a load port; and of a load lock sides: by robot where it comes; door_sides: by
+ * door. */
 static void push_times(lua_State *L, const wh_layout_t *layout, size_t station) {
     const wh_layout_times_t *times = layout->stations[station].times;
-    wh_lua_set_boolean(L, "takes_time", times != NULL);
+    wh_lua_set_boolean(L, "takes_time", times || layout->stations[station].port);
+    wh_lua_set_boolean(L, "is_port", layout->stations[station].port != NULL);
     if (!times || !times->of.is_lock) {
         return;
     }
@@ -315,4 +318,10 @@ void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout) {
     wh_lua_set_number(L, "dz", layout->corrections.z);
     wh_lua_set_number(L, "turn", layout->corrections.turn_deg);
     lua_setfield(L, -2, "corrections");
+    lua_createtable(L, (int)layout->carrier_count, 0);
+    for (size_t c = 0; c < layout->carrier_count; ++c) {
+        lua_pushstring(L, layout->carriers[c].name);
+        lua_rawseti(L, -2, (lua_Integer)c + 1);
+    }
+    lua_setfield(L, -2, "carriers");
 }

@@ -62,6 +62,10 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
     return 20 * (uint64_t)slices;
 }
 
+/* The codes of a station's slots (slot_codes.h), for the wafers as they lie. */
+void wh_mcs_see_slots(const wh_mcs_t *mcs, const wh_station_t *place, const wh_mapping_t *mapping,
+                      int codes[WH_LAYOUT_SLOTS]);
+
 /* Takes each slice for the data that `edge` and `pass` collect; `user` is the wh_mcs_t. */
 void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state);
 
@@ -119,6 +123,7 @@ extern const luaL_Reg wh_mcs_lane_functions[];
 extern const luaL_Reg wh_mcs_own_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
+extern const luaL_Reg wh_mcs_port_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];

@@ -5,6 +5,7 @@
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "clocks.h"
 #include "counted.h"
 #include "native.h"
 #include "playing.h"
@@ -23,6 +24,7 @@ static void keep_slice(wh_mcs_t *mcs) {
 /* Plays one slice: the command goes in, the state comes out, and the listeners get both. */
 static wh_status_t exchange_slice(wh_mcs_t *mcs) {
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
+    wh_mcs_clocks_send(mcs);
     const wh_mcs_partners_t *partners = &mcs->wanted.partners;
     if (partners->lossy && !mcs->lanes && mcs->track.segment_slice == mcs->track.segment_slices) {
         partners->lossy->await(partners->user);

@@ -48,7 +48,8 @@ typedef enum {
     WH_AWAITED_DOOR,
     WH_AWAITED_GRIPPER,
     WH_AWAITED_STATION,
-    WH_AWAITED_LOCK
+    WH_AWAITED_LOCK,
+    WH_AWAITED_PORT
 } wh_awaited_kind_t;
 
 typedef struct {

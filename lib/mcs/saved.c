@@ -4,6 +4,7 @@
 
 #include "../sim/snapshot.h"
 #include "clocks.h"
+#include "ports.h"
 
 /* The name of the type of userdata. */
 #define SAVED "wh.saved_state"
@@ -75,6 +76,11 @@ static void keep_clocks(lua_State *L, const wh_mcs_t *mcs) {
         memcpy(bytes, mcs->clocks->state, mcs->clocks->state_bytes);
         (void)lua_setiuservalue(L, -2, 1);
     }
+    if (mcs->clocks && mcs->clocks->ports) {
+        void *bytes = lua_newuserdatauv(L, mcs->clocks->ports->state_bytes, 0);
+        memcpy(bytes, mcs->clocks->ports->state, mcs->clocks->ports->state_bytes);
+        (void)lua_setiuservalue(L, -2, 2);
+    }
 }
 
 static void put_clocks_back(lua_State *L, const wh_mcs_t *mcs, int saved) {
@@ -82,11 +88,15 @@ static void put_clocks_back(lua_State *L, const wh_mcs_t *mcs, int saved) {
         memcpy(mcs->clocks->state, lua_touserdata(L, -1), mcs->clocks->state_bytes);
         lua_pop(L, 1);
     }
+    if (mcs->clocks && mcs->clocks->ports && lua_getiuservalue(L, saved, 2) == LUA_TUSERDATA) {
+        memcpy(mcs->clocks->ports->state, lua_touserdata(L, -1), mcs->clocks->ports->state_bytes);
+        lua_pop(L, 1);
+    }
 }
 
 /* Pushes room for these bytes, with the state of motion control. */
 static saved_t *push_saved(lua_State *L, const wh_mcs_t *mcs, size_t size) {
-    saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 1);
+    saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 2);
     keep_clocks(L, mcs);
     memset(saved, 0, sizeof *saved);
     keep_state(mcs, saved);
@@ -193,14 +203,26 @@ static bool is_armed_otherwise(const wh_mcs_armed_t *saved, const wh_mcs_armed_t
     return differs;
 }
 
-/* native.differs(saved): true if a slice was played since, a fault is on its way, or an armed error or a held
- * command has come or gone. */
+/* A carrier may be told to come before any slice. */
+static bool are_ports_otherwise(lua_State *L, const wh_mcs_t *mcs, int saved) {
+    const struct wh_ports *ports = mcs->clocks ? mcs->clocks->ports : NULL;
+    bool differs = false;
+    if (ports && lua_getiuservalue(L, saved, 2) == LUA_TUSERDATA) {
+        differs = memcmp(lua_touserdata(L, -1), ports->state, ports->state_bytes) != 0;
+        lua_pop(L, 1);
+    }
+    return differs;
+}
+
+/* native.differs(saved): true if a slice was played since, a fault is on its way, or an armed error, a held
+ * command or a carrier has come or gone. */
 static int differs_from_saved(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
                            saved->command.fault_count != mcs->command.fault_count ||
-                           is_armed_otherwise(&saved->armed, &mcs->armed) || is_held_otherwise(saved, mcs));
+                           is_armed_otherwise(&saved->armed, &mcs->armed) || is_held_otherwise(saved, mcs) ||
+                           are_ports_otherwise(L, mcs, 1));
     return 1;
 }
 

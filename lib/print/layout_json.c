@@ -7,6 +7,7 @@
 #include "../layout/words.h"
 #include "../math/trig.h"
 #include "../text/json.h"
+#include "layout_ports.h"
 #include "layout_print.h"
 #include "layout_times.h"
 
@@ -199,6 +200,9 @@ static json_t *station(const void *subject, size_t i) {
     if (from->times) {
         wh_json_put(object, "times", wh_layout_times_to_json(from->times));
     }
+    if (from->port) {
+        wh_json_put(object, "port", wh_layout_port_to_json(from->port));
+    }
     return object;
 }
 
@@ -360,6 +364,9 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
                       NULL);
     if (layout->machine.door_count > 0) {
         wh_json_put(root, "doors", wh_json_list(door, layout, layout->machine.door_count));
+    }
+    if (layout->carrier_count > 0) {
+        wh_json_put(root, "carriers", wh_json_list(wh_layout_carrier_to_json, layout, layout->carrier_count));
     }
     (void)wh_json_add(root, "corrections shapes parts clearance findings warnings",
                       corrections(&layout->corrections), shapes(&layout->shapes),

@@ -8,6 +8,7 @@
 #include "../layout/words.h"
 #include "../math/trig.h"
 #include "../text/array.h"
+#include "layout_ports.h"
 #include "layout_print.h"
 #include "layout_times.h"
 #include "print_internal.h"
@@ -196,6 +197,16 @@ static void print_times(const listing_t *listing) {
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, WH_LAYOUT_TIMES_COLUMNS);
     wh_layout_times_fill(listing->layout, grid);
     wh_print_titled(&listing->frame, "Stations that take time", grid);
+}
+
+/* Load ports, and the carriers that come to them. */
+static void print_ports(const listing_t *listing) {
+    wh_grid_t *ports = wh_grid_new(listing->frame.style, 1, WH_LAYOUT_PORTS_COLUMNS);
+    wh_layout_ports_fill(listing->layout, ports);
+    wh_print_titled(&listing->frame, "Load ports", ports);
+    wh_grid_t *carriers = wh_grid_new(listing->frame.style, 1, WH_LAYOUT_CARRIERS_COLUMNS);
+    wh_layout_carriers_fill(listing->layout, carriers);
+    wh_print_titled(&listing->frame, "Carriers", carriers);
 }
 
 static void print_servers(const listing_t *listing) {
@@ -404,6 +415,7 @@ int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_sty
     print_doors(&listing);
     print_stations(&listing);
     print_times(&listing);
+    print_ports(&listing);
     print_servers(&listing);
     print_room(&listing);
     print_holding(&listing);

@@ -5,6 +5,7 @@
 
 #include "../layout/axes.h"
 #include "../layout/grips.h"
+#include "../layout/ports.h"
 #include "../layout/times.h"
 #include "../math/trig.h"
 #include "../record/steady.h"
@@ -470,7 +471,8 @@ static void put_head(const wh_record_t *record, json_t *root) {
 
 /* A cell without stations that take time tells nothing of them. */
 static void put_stations(const wh_record_t *record, json_t *root) {
-    if (record->station_event_count > 0 || (record->layout && wh_layout_takes_time(record->layout))) {
+    if (record->station_event_count > 0 ||
+        (record->layout && (wh_layout_takes_time(record->layout) || wh_layout_has_ports(record->layout)))) {
         wh_json_put(root, "station_events",
                     wh_json_list(wh_station_event_to_json, record, record->station_event_count));
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "../layout/grips.h"
+#include "../layout/ports.h"
 #include "../math/trig.h"
 #include "../sim/event_text.h"
 #include "../text/array.h"
@@ -104,11 +105,13 @@ static void add_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_eve
     say_why(printer, grid, at, event);
 }
 
-/* True if an event belongs among the misses. */
-static bool is_miss(wh_event_kind_t kind) {
+/* True if an event belongs among the misses: no wafer that a carrier brings or takes. */
+static bool is_miss(const wh_event_t *event) {
     static const uint32_t others = 1U << WH_EVENT_NEAR_MISS | 1U << WH_EVENT_VACUUM_LOST |
                                    1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
-    return (others >> (unsigned)kind & 1U) != 0 || wh_print_is_complaint(kind);
+    const bool is_brought =
+        event->kind == WH_EVENT_FAULT_ARMED && event->parts[1] == (int32_t)WH_FAULT_WAFER_PLACED;
+    return !is_brought && ((others >> (unsigned)event->kind & 1U) != 0 || wh_print_is_complaint(event->kind));
 }
 
 static void print_complaints(const wh_printer_t *printer) {
@@ -117,7 +120,7 @@ static void print_complaints(const wh_printer_t *printer) {
     wh_print_measured_columns(printer, grid);
     wh_grid_columns(grid, "why");
     for (size_t i = 0; i < record->event_count; ++i) {
-        if (is_miss(record->events[i].event.kind)) {
+        if (is_miss(&record->events[i].event)) {
             add_event(printer, grid, &record->events[i]);
         }
     }
@@ -158,6 +161,10 @@ static void read_history(const wh_record_t *record, const history_t *history) {
 static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
     const wh_place_t *place = &wafer->place;
     const char *station = wh_record_station_name(printer->record, place->station);
+    if (!station && wh_layout_is_outside(&wafer->base_from_wafer)) {
+        wh_grid_text(grid, LIES_IN, WH_INK_PLAIN, "not in the cell");
+        return;
+    }
     if (!station) {
         wh_grid_text(grid, LIES_IN, wafer->holder == WH_NONE ? WH_INK_BAD : WH_INK_PLAIN, "no slot");
         return;

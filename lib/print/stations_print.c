@@ -12,12 +12,16 @@ json_t *wh_station_event_to_json(const void *subject, size_t i) {
     const wh_station_event_record_t *from = &record->station_events[i];
     const wh_clock_event_t *event = &from->event;
     const bool of_place = event->slot != WH_FLOW_NONE;
-    return wh_json_set(
+    const bool of_port = event->kind >= WH_CLOCK_PORT_BEGINS;
+    json_t *object = wh_json_set(
         json_object(), "utime %lld kind %s station %s slot %lld wafer %s side %s seconds %g",
         (json_int_t)event->at_us, wh_clock_kind_name(event->kind),
         wh_record_station_name(record, from->station), of_place ? (json_int_t)event->slot + 1 : WH_JSON_NONE,
         wh_record_wafer_name(record, event->wafer),
         event->side == WH_FLOW_BOTH ? NULL : wh_clock_side_name(event->side), (double)event->us / 1e6);
+    return of_port ? wh_json_set(object, "step %s carrier %s", wh_load_port_step_name(from->step),
+                                 from->carrier[0] ? from->carrier : NULL)
+                   : object;
 }
 
 /* --------------------------------------------------------------------------------------------- as a table */
@@ -25,7 +29,8 @@ json_t *wh_station_event_to_json(const void *subject, size_t i) {
 enum { BEGINS, STATION, SLOT, WHAT, WAFER, ENDS, STAYS };
 
 /* The word for the thing that an event begins, or whose begin it misses; null: for neither. */
-static const char *begins_what(const wh_clock_event_t *event) {
+static const char *begins_what(const wh_station_event_record_t *record) {
+    const wh_clock_event_t *event = &record->event;
     switch ((int)event->kind) {
     case WH_CLOCK_PROCESS_BEGINS:
     case WH_CLOCK_UNPROCESSED:
@@ -35,13 +40,16 @@ static const char *begins_what(const wh_clock_event_t *event) {
         return "clean";
     case WH_CLOCK_PUMP_BEGINS:
         return event->side == WH_FLOW_VACUUM ? "to vacuum" : "to atmosphere";
+    case WH_CLOCK_PORT_BEGINS:
+        return wh_load_port_step_name(record->step);
     default:
         return NULL;
     }
 }
 
 static bool ends(wh_clock_kind_t kind) {
-    return kind == WH_CLOCK_PROCESS_ENDS || kind == WH_CLOCK_CLEAN_ENDS || kind == WH_CLOCK_PUMP_ENDS;
+    return kind == WH_CLOCK_PROCESS_ENDS || kind == WH_CLOCK_CLEAN_ENDS || kind == WH_CLOCK_PUMP_ENDS ||
+           kind == WH_CLOCK_PORT_ENDS;
 }
 
 /* The next event of the same slot, or of the station, behind this one; null: there is none. */
@@ -58,7 +66,7 @@ static const wh_clock_event_t *next_of(const wh_record_t *record, size_t *i) {
 }
 
 static bool is_cut(wh_clock_kind_t kind) {
-    return kind == WH_CLOCK_PROCESS_CUT || kind == WH_CLOCK_CLEAN_CUT;
+    return kind == WH_CLOCK_PROCESS_CUT || kind == WH_CLOCK_CLEAN_CUT || kind == WH_CLOCK_PORT_TIMEOUT;
 }
 
 /* The end of what event `i` begins, whose number `i` then is; null: it goes on. Wafers may come and go
@@ -78,7 +86,9 @@ static double window_s(const wh_record_t *record, int32_t station) {
 
 static void put_end(wh_grid_t *grid, const wh_clock_event_t *end) {
     if (end && is_cut(end->kind)) {
-        wh_grid_text(grid, ENDS, WH_INK_BAD, "cut at %.3f", (double)end->at_us / 1e6);
+        wh_grid_text(grid, ENDS, WH_INK_BAD,
+                     end->kind == WH_CLOCK_PORT_TIMEOUT ? "ran out at %.3f" : "cut at %.3f",
+                     (double)end->at_us / 1e6);
     } else if (end) {
         wh_grid_number(grid, ENDS, WH_INK_PLAIN, (double)end->at_us / 1e6);
     } else {
@@ -134,7 +144,7 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t i, cons
     if (from->event.slot != WH_FLOW_NONE) {
         wh_grid_text(grid, SLOT, WH_INK_PLAIN, "%d", (int)from->event.slot + 1);
     }
-    wh_grid_text(grid, WHAT, WH_INK_PLAIN, "%s", what);
+    wh_grid_text(grid, WHAT, WH_INK_PLAIN, "%s%s%s", what, from->carrier[0] ? " of " : "", from->carrier);
     wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(printer, from->event.wafer));
     put_times(printer, grid, i);
 }
@@ -144,7 +154,7 @@ void wh_print_stations(const wh_printer_t *printer) {
     wh_grid_t *grid =
         wh_grid_new(printer->style, 1, "begins s{3,6};station;slot{0};what;wafer;ends s{3,6};stays s{3,6}");
     for (size_t i = 0; i < record->station_event_count; ++i) {
-        const char *what = begins_what(&record->station_events[i].event);
+        const char *what = begins_what(&record->station_events[i]);
         if (what) {
             add_row(printer, grid, i, what);
         }

@@ -106,8 +106,8 @@ static json_t *drawn(const void *subject, size_t i) {
     const subject_t *of = subject;
     const wh_cause_told_t *told = &of->told[i];
     const wh_cause_t *cause = told->cause;
-    static const char *const kinds[] = {"wafer", "station", "gripper", "vacuum",
-                                        "rim",   "beam",    "process", "debounce"};
+    static const char *const kinds[] = {"wafer", "station", "gripper",  "vacuum", "rim",
+                                        "beam",  "process", "debounce", "port"};
     const subject_t one = {of->result, told};
     json_t *object = wh_json_set(json_object(), "kind %s of %s what %s unit %s width %g", kinds[cause->kind],
                                  wh_cause_of(cause, of->result->study->layout), wh_cause_what(cause),

@@ -58,6 +58,12 @@ void wh_layout_read_vias(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
 
+/* Load ports, and carriers without their wafers, whose number is returned; those wafers, for which there must
+ * be room; and, once all wafers are there, in which state each port begins. */
+size_t wh_layout_read_ports(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_add_carried(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_begin_ports(wh_reader_t *reader, wh_layout_t *layout);
+
 /* Read `grip` of the gripper at which the reader is; and, once rims are read, the wafers as edge grips meet
  * them. */
 void wh_layout_read_grip(wh_reader_t *reader, wh_layout_t *layout, size_t g);

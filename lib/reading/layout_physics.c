@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../layout/grips.h"
+#include "../layout/ports.h"
 #include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
@@ -73,8 +74,8 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
 /* ------------------------------------------------------------------------------------------------- faults */
 
 static wh_fault_kind_t read_kind(wh_reader_t *reader) {
-    const char *names[WH_FAULT_KINDS + 1] = {NULL};
-    for (int i = 0; i < WH_FAULT_KINDS; ++i) {
+    const char *names[WH_FAULT_WAFER_PLACED + 1] = {NULL};
+    for (int i = 0; i < WH_FAULT_WAFER_PLACED; ++i) {
         names[i] = wh_fault_name((wh_fault_kind_t)i);
     }
     const int kind = wh_reader_choice(reader, "kind", WH_NONE, names);
@@ -159,11 +160,29 @@ static int32_t read_station(wh_reader_t *reader, const wh_layout_t *layout) {
 
 static int32_t read_timed_station(wh_reader_t *reader, const wh_layout_t *layout) {
     const int32_t station = read_station(reader, layout);
-    if (!layout->stations[station].times) {
+    if (!layout->stations[station].times && !layout->stations[station].port) {
         wh_reader_refuse(reader, "station", layout->stations[station].name,
-                         "a station that takes time: with `process`, `clean` or `pump`");
+                         "a station that takes time: with `process`, `clean` or `pump`, or a load port");
     }
     return station;
+}
+
+static bool is_of_handshake(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_E84_STUCK || kind == WH_FAULT_E84_LATE;
+}
+
+/* The step of a load port's handshake, from 1. */
+static int32_t read_step(wh_reader_t *reader, const wh_layout_t *layout, int32_t station) {
+    static const char *const steps[] = {"tp1", "tp2", "tp3", "tp4", "tp5", NULL};
+    const wh_layout_port_t *port = layout->stations[station].port;
+    if (!port || !port->of.is_e84) {
+        wh_reader_refuse(reader, "station", layout->stations[station].name, "a load port with `e84`");
+    }
+    const int step = wh_reader_choice(reader, "step", WH_NONE, steps);
+    if (step == WH_NONE) {
+        wh_reader_refuse(reader, "step", NULL, "\"tp1\" to \"tp5\"");
+    }
+    return step + 1;
 }
 
 static int32_t read_beam(wh_reader_t *reader, const wh_layout_t *layout) {
@@ -220,6 +239,8 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
     }
     if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
         fault->other = read_onto(reader, layout, fault->target);
+    } else if (is_of_handshake(fault->kind)) {
+        fault->other = read_step(reader, layout, fault->target);
     }
 }
 

@@ -227,10 +227,15 @@ static void read_rims(wh_reader_t *reader, wh_layout_t *layout) {
     }
     layout->nominal_rim = nominal;
     layout->rims = rims;
+    size_t said = 0;
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        rims[w] = nominal;
+        said += layout->wafers[w].carrier == 0 ? 1 : 0;
+    }
     if (!wh_reader_enter(reader, "wafers")) {
         return;
     }
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
+    for (size_t w = 0; w < said; ++w) {
         wh_reader_enter_item(reader, (lua_Integer)w + 1);
         rims[w] = read_wafer(reader, layout, nominal);
         wh_reader_leave(reader);

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "../layout/grips.h"
+#include "../layout/ports.h"
+#include "../layout/words.h"
 #include "../math/deviate.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
@@ -153,7 +155,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     wh_reader_refuse_unknown(reader, wh_layout_station_fields);
     const int kind = (int)wh_reader_apart(reader, "kind");
     station->prealigner = kind == 1;
-    station->foup = kind == 2;
+    station->foup = kind == 2 || kind == WH_LAYOUT_LOAD_PORT;
     station->flipper = kind == 3;
     read_place(reader, layout, station, &layout->places[index]);
     read_moves(reader, layout, &layout->places[index], station);
@@ -299,8 +301,10 @@ static int compare_slots(const void *a, const void *b) {
     return in_order(one, two, stations != 0 ? stations : (one->slot > two->slot) - (one->slot < two->slot));
 }
 
-static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,
-                    const char *field, const char *expected) {
+/* One of two wafers: that of the list, if the other one comes with a carrier. */
+static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const entry_t of[2], const char *field,
+                    const char *expected) {
+    const wh_layout_wafer_t *wafer = of[1]->carrier == 0 ? of[1] : of[0];
     char path[40];
     snprintf(path, sizeof path, "[%d].%s", (int)(wafer - layout->wafers) + 1, field);
     wh_reader_fail(reader, path, "%s", expected);
@@ -308,50 +312,71 @@ static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_lay
 
 /* Sorting puts wafers with the same name side by side. */
 static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        order[w] = &layout->wafers[w];
+    }
     qsort(order, layout->wafer_count, sizeof(entry_t), compare_wafer_names);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
         if (strcmp(order[i - 1]->name, order[i]->name) == 0) {
             lua_pushstring(reader->L, order[i]->name);
-            fail_at(reader, layout, order[i], "name", "a name that no other wafer has");
+            fail_at(reader, layout, &order[i - 1], "name", "a name that no other wafer has");
         }
     }
 }
 
+/* Wafers that are still to come lie in no slot. */
 static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
-    qsort(order, layout->wafer_count, sizeof(entry_t), compare_slots);
-    for (size_t i = 1; i < layout->wafer_count; ++i) {
+    size_t count = 0;
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        order[count] = &layout->wafers[w];
+        count += wh_layout_is_outside(&layout->start[w].base_from_wafer) ? 0 : 1;
+    }
+    qsort(order, count, sizeof(entry_t), compare_slots);
+    for (size_t i = 1; i < count; ++i) {
         const wh_layout_wafer_t *wafer = order[i];
         const wh_layout_wafer_t *before = order[i - 1];
         if (before->station == wafer->station && before->slot == wafer->slot) {
             char expected[200];
             snprintf(expected, sizeof expected, "a slot of %s of its own; \"%s\" lies in this one",
-                     layout->stations[wafer->station].name, before->name);
+                     layout->stations[wafer->station].name, wafer->carrier == 0 ? before->name : wafer->name);
             lua_pushinteger(reader->L, wafer->slot);
-            fail_at(reader, layout, wafer, "slot", expected);
+            fail_at(reader, layout, &order[i - 1], "slot", expected);
         }
     }
 }
 
-void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
-    if (!wh_reader_enter(reader, "wafers")) {
-        return;
-    }
-    const size_t count = wh_reader_list(reader);
-    if (count > WH_LAYOUT_WAFERS) {
-        wh_reader_fail(reader, NULL, "at most %d wafers", WH_LAYOUT_WAFERS);
-    }
-    layout->wafers = wh_layout_memory(reader->L, count, sizeof *layout->wafers);
-    layout->start = wh_layout_memory(reader->L, count, sizeof *layout->start);
+static void read_list(wh_reader_t *reader, wh_layout_t *layout, size_t count) {
     for (; layout->wafer_count < count; ++layout->wafer_count) {
         wh_reader_enter_item(reader, (lua_Integer)layout->wafer_count + 1);
         read_wafer(reader, layout, layout->wafer_count);
         wh_reader_leave(reader);
     }
-    entry_t *order = wh_layout_memory(reader->L, count, sizeof(entry_t));
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
-        order[w] = &layout->wafers[w];
+}
+
+/* Those of the list, and those that come with carriers. */
+void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
+    const size_t carried = wh_layout_read_ports(reader, layout);
+    const bool is_said = wh_reader_enter(reader, "wafers");
+    const size_t count = is_said ? wh_reader_list(reader) : 0;
+    if (count + carried > WH_LAYOUT_WAFERS) {
+        wh_reader_fail(reader, NULL, "at most %d wafers", WH_LAYOUT_WAFERS);
     }
+    if (count + carried == 0) {
+        if (is_said) {
+            wh_reader_leave(reader);
+        }
+        wh_layout_begin_ports(reader, layout);
+        return;
+    }
+    layout->wafers = wh_layout_memory(reader->L, count + carried, sizeof *layout->wafers);
+    layout->start = wh_layout_memory(reader->L, count + carried, sizeof *layout->start);
+    read_list(reader, layout, count);
+    wh_layout_add_carried(reader, layout);
+    entry_t *order = wh_layout_memory(reader->L, layout->wafer_count, sizeof(entry_t));
     refuse_same_name(reader, layout, order);
     refuse_same_slot(reader, layout, order);
-    wh_reader_leave(reader);
+    if (is_said) {
+        wh_reader_leave(reader);
+    }
+    wh_layout_begin_ports(reader, layout);
 }

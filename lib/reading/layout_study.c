@@ -42,6 +42,8 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
     errors->vacuum.width = wh_reader_apart(reader, "vacuum");
     errors->process.shape = errors->vacuum.shape;
     errors->process.width = wh_reader_apart(reader, "process");
+    errors->port.shape = errors->vacuum.shape;
+    errors->port.width = wh_reader_apart(reader, "port");
     errors->debounce.shape = errors->vacuum.shape;
     errors->debounce.width = wh_reader_apart(reader, "debounce");
     errors->valves[0].shape = errors->vacuum.shape;

@@ -2,6 +2,7 @@
  * which doors and sides go with them. */
 #include <math.h>
 
+#include "../layout/words.h"
 #include "layout_internal.h"
 #include "layout_tool.h"
 
@@ -203,16 +204,21 @@ static void refuse_sides(wh_reader_t *reader, const wh_layout_t *layout) {
     }
 }
 
+/* layout_ports.c reads these. */
+static bool is_port(wh_reader_t *reader) {
+    return (int)wh_reader_apart(reader, "kind") == WH_LAYOUT_LOAD_PORT;
+}
+
 void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_enter(reader, "stations");
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_layout_station_t *station = &layout->stations[s];
-        wh_reader_enter(reader, station->name);
+        (void)wh_reader_open(reader, station->name, wh_layout_station_fields);
         refuse_chuck(reader, station);
         for (size_t r = 0; station->by && r < layout->robot_count; ++r) {
             station->by[r].side = WH_FLOW_BOTH;
         }
-        if (says_any(reader)) {
+        if (says_any(reader) && !is_port(reader)) {
             station->times = read_times(reader, layout, s);
         } else {
             refuse_sides(reader, layout);

@@ -4,6 +4,7 @@
 
 #include "../flow/clock.h"
 #include "../flow/figures.h"
+#include "../flow/load_port.h"
 #include "../layout/layout.h"
 #include "activity.h"
 #include "centrings.h"
@@ -57,10 +58,12 @@ typedef struct {
     bool is_open;       /* the wait goes on */
 } wh_wait_record_t;
 
-/* Something that a station did by itself. */
+/* Something that a station did by itself; of a load port with the step and the carrier. */
 typedef struct {
     int32_t station;
     wh_clock_event_t event;
+    wh_load_port_step_t step;
+    char carrier[WH_NAME_SIZE]; /* its name; empty: none */
 } wh_station_event_record_t;
 
 /* A cycle that the script marked. */

@@ -11,12 +11,12 @@ const char *wh_fault_name(wh_fault_kind_t kind) {
         "wafer_crossed", "wafer_shifted", "wafer_tilted",      "plunger_stuck",    "plunger_slow",
         "door_stuck",    "door_slow",     "beam_dark",         "beam_lit",         "beam_late",
         "probe_closed",  "probe_open",    "edge_sensor_stuck", "edge_sensor_late", "station_stuck",
-        "station_slow"};
+        "station_slow",  "e84_stuck",     "e84_late",          "wafer_placed"};
     return (unsigned)kind < WH_FAULT_KINDS ? names[kind] : "unknown";
 }
 
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind) {
-    return kind >= WH_FAULT_WAFER_MISSING && kind <= WH_FAULT_WAFER_TILTED;
+    return (kind >= WH_FAULT_WAFER_MISSING && kind <= WH_FAULT_WAFER_TILTED) || kind == WH_FAULT_WAFER_PLACED;
 }
 
 bool wh_fault_is_of_door(wh_fault_kind_t kind) {
@@ -28,7 +28,7 @@ bool wh_fault_is_of_beam(wh_fault_kind_t kind) {
 }
 
 bool wh_fault_is_of_station(wh_fault_kind_t kind) {
-    return kind == WH_FAULT_STATION_STUCK || kind == WH_FAULT_STATION_SLOW;
+    return kind >= WH_FAULT_STATION_STUCK && kind <= WH_FAULT_E84_LATE;
 }
 
 wh_real_t wh_fault_most(wh_fault_kind_t kind) {
@@ -39,7 +39,8 @@ wh_real_t wh_fault_most(wh_fault_kind_t kind) {
         {WH_FAULT_SLOW_VACUUM, WH_REAL(3600)},       {WH_FAULT_LEAK, WH_REAL(1)},
         {WH_FAULT_EDGE_SENSOR_STUCK, WH_REAL(1)},    {WH_FAULT_PLUNGER_SLOW, (wh_real_t)WH_PLUNGER_FAST},
         {WH_FAULT_DOOR_SLOW, WH_REAL(1e4)},          {WH_FAULT_BEAM_LATE, WH_REAL(0.01)},
-        {WH_FAULT_EDGE_SENSOR_LATE, WH_REAL(0.001)}, {WH_FAULT_STATION_SLOW, WH_REAL(1000)}};
+        {WH_FAULT_EDGE_SENSOR_LATE, WH_REAL(0.001)}, {WH_FAULT_STATION_SLOW, WH_REAL(1000)},
+        {WH_FAULT_E84_LATE, WH_REAL(3600)}};
     wh_real_t most = 0;
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; ++i) {
         most = limits[i].kind == kind ? limits[i].most : most;
@@ -64,21 +65,29 @@ wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, 
     return fault;
 }
 
-static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
-    if (fault->kind == WH_FAULT_COMMAND_LOST) {
-        return fault->target == WH_NONE && fault->other == WH_NONE;
-    }
-    const size_t count = wh_fault_is_of_wafer(fault->kind)     ? wafer_count
-                         : wh_fault_is_of_door(fault->kind)    ? WH_DOORS
-                         : wh_fault_is_of_beam(fault->kind)    ? WH_BEAMS
-                         : wh_fault_is_of_station(fault->kind) ? WH_FAULT_STATIONS
-                                                               : gripper_count;
-    if (!wh_is_index(fault->target, count)) {
-        return false;
+static size_t count_targets(wh_fault_kind_t kind, size_t gripper_count, size_t wafer_count) {
+    return wh_fault_is_of_wafer(kind)     ? wafer_count
+           : wh_fault_is_of_door(kind)    ? WH_DOORS
+           : wh_fault_is_of_beam(kind)    ? WH_BEAMS
+           : wh_fault_is_of_station(kind) ? WH_FAULT_STATIONS
+                                          : gripper_count;
+}
+
+static bool other_fits(const wh_fault_t *fault, size_t wafer_count) {
+    if (fault->kind == WH_FAULT_E84_STUCK || fault->kind == WH_FAULT_E84_LATE) {
+        return fault->other >= 1 && fault->other <= WH_FAULT_E84_STEPS;
     }
     return fault->kind == WH_FAULT_WAFER_DOUBLED
                ? wh_is_index(fault->other, wafer_count) && fault->other != fault->target
                : fault->other == WH_NONE;
+}
+
+static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
+    const bool has_target =
+        fault->kind == WH_FAULT_COMMAND_LOST
+            ? fault->target == WH_NONE
+            : wh_is_index(fault->target, count_targets(fault->kind, gripper_count, wafer_count));
+    return has_target && other_fits(fault, wafer_count);
 }
 
 static bool value_fits(const wh_fault_t *fault) {
@@ -232,7 +241,10 @@ static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
         return false;
     }
     slot->before = wafer->base_from_wafer;
-    wh_pose_compose_to(&from->base_from_wafer, &fault->offset, &slot->placed);
+    slot->placed = fault->offset;
+    if (fault->kind != WH_FAULT_WAFER_PLACED) {
+        wh_pose_compose_to(&from->base_from_wafer, &fault->offset, &slot->placed);
+    }
     if (wh_pose_validate(&slot->placed) != WH_OK) {
         wh_mat3_orthonormalise(&slot->placed.R);
     }
@@ -269,7 +281,7 @@ static bool begin(wh_fault_slot_t *slot, wh_grasp_t *table) {
     if (wh_fault_is_of_wafer(slot->fault.kind) && !move_wafer(slot, table)) {
         return false;
     }
-    slot->phase = WH_FAULT_ACTING;
+    slot->phase = slot->fault.kind == WH_FAULT_WAFER_PLACED ? WH_FAULT_OVER : WH_FAULT_ACTING;
     return true;
 }
 

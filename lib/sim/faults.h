@@ -24,6 +24,9 @@
  *   EDGE_SENSOR_LATE    the samples are taken `value` s later
  *   STATION_STUCK   what goes on in the station by itself stands; the simulator has no part in it
  *   STATION_SLOW    it takes `value` times as long
+ *   E84_STUCK       a step of a load port's handshake, `other` from 1 to 5, stands, likewise
+ *   E84_LATE        it takes `value` s longer
+ *   WAFER_PLACED    the wafer goes to `offset` in base, and the fault is over: a carrier brings or takes it
  *
  * The wafer, or the one that it is doubled onto, may be held when its fault is due to begin. Then the fault
  * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
@@ -74,6 +77,8 @@ WH_REFUSE_PACKING(faults);
 #define WH_BEAMS 16
 /* The most stations that a fault can name. */
 #define WH_FAULT_STATIONS 1000
+/* The steps of a load port's handshake. */
+#define WH_FAULT_E84_STEPS 5
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
@@ -103,17 +108,21 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_EDGE_SENSOR_STUCK,
     WH_FAULT_EDGE_SENSOR_LATE,
     WH_FAULT_STATION_STUCK,
-    WH_FAULT_STATION_SLOW
+    WH_FAULT_STATION_SLOW,
+    WH_FAULT_E84_STUCK,
+    WH_FAULT_E84_LATE,
+    WH_FAULT_WAFER_PLACED /* the last one: no fault on purpose */
 } wh_fault_kind_t;
 
-#define WH_FAULT_KINDS 26
+#define WH_FAULT_KINDS 29
 
 typedef struct {
     wh_fault_kind_t kind;
     int32_t target; /* gripper, wafer, door, beam or station; WH_NONE for COMMAND_LOST */
-    int32_t other;  /* DOUBLED: the wafer underneath; otherwise WH_NONE */
-    /* SLOW_VACUUM: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and DOOR_SLOW: mm/s, 0 to
-     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; STATION_SLOW: 0 to 1000; otherwise 0 */
+    int32_t other;  /* DOUBLED: the wafer underneath; E84_*: the step; otherwise WH_NONE */
+    /* SLOW_VACUUM and E84_LATE: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and
+     * DOOR_SLOW: mm/s, 0 to 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; STATION_SLOW: 0 to
+     * 1000; otherwise 0 */
     wh_real_t value;
     wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; otherwise the identity */
     int64_t from, until; /* slices, seq: 1 <= from, 0 <= until; WH_FAULT_FOREVER: until it is cleared */
@@ -150,8 +159,8 @@ typedef struct {
     uint32_t armed, cleared;
 } wh_fault_changes_t;
 
-/* The kind's name as layouts and scripts spell it: no_vacuum to station_slow, or "unknown". Never
- * null. */
+/* The kind's name as layouts and scripts spell it: no_vacuum to e84_late, or wafer_placed, which these have
+ * not, or "unknown". Never null. */
 const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
 /* True if the kind is about a wafer. */
@@ -173,7 +182,8 @@ wh_real_t wh_fault_most(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_most);
  * is a gripper, a wafer, a door, a beam or a station; COMMAND_LOST has none (WH_NONE replaces it). `value`
  * counts for kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the
  * identity; that of WAFER_MISSING points 100 m down, out of every cell. The caller sets the other values that
- * the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED.
+ * the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED and
+ * _PLACED, `other` of E84_*.
  * Nothing is checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
  *
  *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);

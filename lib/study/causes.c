@@ -1,6 +1,7 @@
 #include "causes.h"
 
 #include "../layout/beam_errors.h"
+#include "../layout/ports.h"
 #include "../layout/times.h"
 #include "../text/array.h"
 
@@ -69,6 +70,17 @@ static void add_processes(list_t *list, const wh_layout_t *layout, const wh_erro
     }
 }
 
+/* Each step of a load port that takes any time. */
+static void add_ports(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        const wh_layout_port_t *port = layout->stations[s].port;
+        for (size_t step = 1; port && step < WH_LOAD_PORT_STEPS; ++step) {
+            const bool is_it = wh_load_port_has(&port->of, (wh_load_port_step_t)step);
+            add(list, WH_CAUSE_PORT, s, step, is_it ? errors->port.width : 0);
+        }
+    }
+}
+
 static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         add_spreads(list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
@@ -92,6 +104,7 @@ static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *
     }
     add_processes(list, layout, errors);
     add(list, WH_CAUSE_DEBOUNCE, 0, 0, errors->debounce.width);
+    add_ports(list, layout, errors);
 }
 
 wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
@@ -139,8 +152,9 @@ static double draw_other(const wh_layout_t *layout, const wh_trial_t *trial, con
            : cause->kind == WH_CAUSE_VACUUM   ? wh_errors_draw_vacuum(errors, trial)
            : cause->kind == WH_CAUSE_DEBOUNCE ? wh_errors_draw_debounce(errors, trial)
            : cause->kind == WH_CAUSE_PROCESS  ? wh_errors_draw_process(errors, trial, cause->index)
-           : cause->kind == WH_CAUSE_RIM      ? draw_rim(layout, trial, cause)
-                                              : draw_beam(errors, trial, cause);
+           : cause->kind == WH_CAUSE_PORT ? wh_errors_draw_port(errors, trial, cause->index, cause->component)
+           : cause->kind == WH_CAUSE_RIM  ? draw_rim(layout, trial, cause)
+                                          : draw_beam(errors, trial, cause);
 }
 
 /* A displacement is drawn once, for all of its components that follow each other. */
@@ -173,6 +187,7 @@ const char *wh_cause_what(const wh_cause_t *cause) {
            : cause->kind == WH_CAUSE_BEAM    ? wh_beam_draw_name((wh_beam_draw_t)cause->component)
            : cause->kind == WH_CAUSE_VALVE   ? "valve"
            : cause->kind == WH_CAUSE_PROCESS ? "process"
+           : cause->kind == WH_CAUSE_PORT    ? wh_load_port_step_name((wh_load_port_step_t)cause->component)
            : cause->kind == WH_CAUSE_VACUUM  ? "vacuum"
                                              : "debounce";
 }
@@ -196,7 +211,9 @@ const char *wh_cause_unit(const wh_cause_t *cause) {
     if (cause->kind == WH_CAUSE_BEAM) {
         return wh_beam_draw_unit((wh_beam_draw_t)cause->component);
     }
-    return is_delay(cause) || cause->kind == WH_CAUSE_PROCESS ? "s" : cause->component < 3 ? "mm" : "deg";
+    return is_delay(cause) || cause->kind == WH_CAUSE_PROCESS || cause->kind == WH_CAUSE_PORT ? "s"
+           : cause->component < 3                                                             ? "mm"
+                                                                                              : "deg";
 }
 
 const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
@@ -206,7 +223,8 @@ const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
     const bool is_wafer = cause->kind == WH_CAUSE_WAFER || cause->kind == WH_CAUSE_RIM;
     return is_wafer ? layout->wafers[cause->index].name
-           : cause->kind == WH_CAUSE_STATION || cause->kind == WH_CAUSE_PROCESS
+           : cause->kind == WH_CAUSE_STATION || cause->kind == WH_CAUSE_PROCESS ||
+                   cause->kind == WH_CAUSE_PORT
                ? layout->stations[cause->index].name
            : cause->kind == WH_CAUSE_VALVE ? layout->grippers[cause->index].name
            : cause->kind == WH_CAUSE_BEAM  ? layout->beams[cause->index].name

@@ -12,14 +12,15 @@ typedef enum {
     WH_CAUSE_RIM,
     WH_CAUSE_BEAM,
     WH_CAUSE_PROCESS,
-    WH_CAUSE_DEBOUNCE
+    WH_CAUSE_DEBOUNCE,
+    WH_CAUSE_PORT
 } wh_cause_kind_t;
 
 typedef struct {
     wh_cause_kind_t kind;
     size_t index; /* of the wafer, station, gripper or beam */
     /* For a displacement of a wafer or station: x, y, z, then the turns about them; for a rim a
-     * wh_rim_draw_t, for a beam a wh_beam_draw_t. */
+     * wh_rim_draw_t, for a beam a wh_beam_draw_t; for a load port its step. */
     size_t component;
     int32_t robot; /* with several robots, the one whose taught place is off; else WH_NONE */
     double width;  /* mm, degrees, s; a share has no unit */

@@ -8,6 +8,7 @@
 
 #include "../layout/arms.h"
 #include "../layout/doors.h"
+#include "../layout/ports.h"
 #include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../text/array.h"
@@ -212,6 +213,9 @@ static void check_wafers(wh_feasibility_t *check) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         const wh_layout_wafer_t *wafer = &layout->wafers[w];
         wh_place_t place;
+        if (wh_layout_is_outside(&layout->start[w].base_from_wafer)) {
+            continue; /* it comes with a carrier */
+        }
         ++check->entries[wafer->station].wafers;
         if (wh_cell_locate(&layout->cell, &layout->start[w].base_from_wafer, &place)) {
             high += high < NAMED_STRAYS && say_height(check, w, &place) ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../layout/grips.h"
+#include "../layout/ports.h"
 #include "feasibility_internal.h"
 
 #define REASON 200
@@ -72,6 +73,11 @@ static bool find_reason(const pocket_t *pocket, char reason[REASON]) {
     return reason[0] != '\0';
 }
 
+/* True if the wafer is in the station when a run begins. */
+static bool lies_in(const wh_layout_t *layout, size_t w, int32_t station) {
+    return layout->wafers[w].station == station && !wh_layout_is_outside(&layout->start[w].base_from_wafer);
+}
+
 /* ", nor W05, W07 and 3 more there": those behind this wafer that it would not hold either. */
 static void list_others(pocket_t pocket, char *text, size_t size) {
     const wh_layout_t *layout = pocket.layout;
@@ -82,7 +88,7 @@ static void list_others(pocket_t pocket, char *text, size_t size) {
     while (++pocket.wafer < layout->wafer_count) {
         char reason[REASON];
         const char *name = layout->wafers[pocket.wafer].name;
-        if (layout->wafers[pocket.wafer].station != station || !find_reason(&pocket, reason)) {
+        if (!lies_in(layout, pocket.wafer, station) || !find_reason(&pocket, reason)) {
             continue;
         }
         if (more > 0 || length + strlen(name) + 30 > size) {
@@ -105,7 +111,7 @@ static void look_at(wh_feasibility_t *check, size_t station, size_t gripper) {
         char reason[REASON];
         char others[200];
         const wh_layout_wafer_t *wafer = &layout->wafers[pocket.wafer];
-        if (wafer->station != (int32_t)station || !find_reason(&pocket, reason)) {
+        if (!lies_in(layout, pocket.wafer, (int32_t)station) || !find_reason(&pocket, reason)) {
             continue;
         }
         list_others(pocket, others, sizeof others);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../layout/doors.h"
+#include "../layout/ports.h"
 #include "../mcs/carrying.h"
 #include "../sim/event_text.h"
 #include "../text/array.h"
@@ -76,7 +77,8 @@ static void move_known(wh_tryout_t *tryout, const size_t firsts[]) {
     for (size_t known = 0; known < layout->wafer_count; ++known) {
         const wh_layout_wafer_t *wafer = &layout->wafers[known];
         const size_t w = firsts[wafer->station] + (size_t)wafer->slot - 1;
-        if (w < full->wafer_count && full->wafers[w].station == wafer->station) {
+        const bool is_there = !wh_layout_is_outside(&layout->start[known].base_from_wafer);
+        if (is_there && w < full->wafer_count && full->wafers[w].station == wafer->station) {
             full->start[w] = layout->start[known];
             set_edge(tryout, w, layout->rims[known]);
             memcpy(full->wafers[w].name, wafer->name, sizeof wafer->name);

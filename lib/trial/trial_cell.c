@@ -6,6 +6,7 @@
 
 #include "../layout/beam_errors.h"
 #include "../layout/grips.h"
+#include "../layout/ports.h"
 #include "../math/trig.h"
 
 /* The longest time that wh_vacuum_validate allows, s. */
@@ -81,6 +82,12 @@ static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
 }
 
+void wh_trial_cell_displace(const wh_displacement_t *drawn, wh_pose_t *slot_from_wafer) {
+    const wh_mat3_t turn = turn_of(drawn);
+    slot_from_wafer->R = wh_mat3_multiply(&turn, &slot_from_wafer->R);
+    slot_from_wafer->r = wh_vec3_add(&slot_from_wafer->r, &drawn->moved);
+}
+
 /* Each wafer lies in its slot as the layout says; then what was drawn moves it along the slot's axes and
  * turns it about its own centre. */
 static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_station_t places[],
@@ -89,6 +96,9 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
         const wh_layout_wafer_t *lies = &layout->wafers[w];
         const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &trial_cell->trial, w);
         start[w] = layout->start[w];
+        if (wh_layout_is_outside(&start[w].base_from_wafer)) {
+            continue; /* it is displaced when its carrier comes */
+        }
         if (!wh_displacement_is_any(&drawn) && is_same(&places[lies->station].base_from_station,
                                                        &layout->places[lies->station].base_from_station)) {
             continue;
@@ -96,9 +106,7 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
         const wh_pose_t taught = wh_station_slot(&layout->places[lies->station], lies->slot);
         const wh_pose_t real = wh_station_slot(&places[lies->station], lies->slot);
         wh_pose_t slot_from_wafer = wh_pose_relative(&taught, &layout->start[w].base_from_wafer);
-        const wh_mat3_t turn = turn_of(&drawn);
-        slot_from_wafer.R = wh_mat3_multiply(&turn, &slot_from_wafer.R);
-        slot_from_wafer.r = wh_vec3_add(&slot_from_wafer.r, &drawn.moved);
+        wh_trial_cell_displace(&drawn, &slot_from_wafer);
         start[w].base_from_wafer = wh_pose_compose(&real, &slot_from_wafer);
     }
 }

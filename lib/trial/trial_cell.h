@@ -44,6 +44,9 @@ typedef struct {
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         const wh_trial_room_t *room);
 
+/* Moves a wafer in its slot as it was drawn. */
+void wh_trial_cell_displace(const wh_displacement_t *drawn, wh_pose_t *slot_from_wafer);
+
 /* Moves a slot by `aside`, in base, mm. The blade of an arm without a wrist still points along the arm, whose
  * rail stands at `rail`. */
 void wh_taught_move(const wh_chain_t *chain, double rail, const wh_vec3_t *aside, wh_pose_t *base_from_slot);

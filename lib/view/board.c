@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../layout/inks.h"
+#include "../layout/ports.h"
 #include "../text/array.h"
 #include "../wire/messages.h"
 #include "cell.h"
@@ -279,7 +280,9 @@ static bounds_t bounds_of(const wh_layout_t *layout) {
         include_around(&bounds, &layout->places[s].base_from_station.r);
     }
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        include_around(&bounds, &layout->start[w].base_from_wafer.r);
+        if (!wh_layout_is_outside(&layout->start[w].base_from_wafer)) {
+            include_around(&bounds, &layout->start[w].base_from_wafer.r);
+        }
     }
     return bounds;
 }

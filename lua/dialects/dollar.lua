@@ -37,7 +37,8 @@ local BY_ARGUMENT = { CSTP = true, MTRS = true }
 -- The most arguments of a command. Commands that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
-  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, MAWT = 2, MPMP = 2, CRST = 0,
+  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, MAWT = 2, MPMP = 2, MCAR = 2,
+  MPRT = 2, MTKA = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
   RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 13, RAXS = 0, RLOC = 1, RVER = 0,
 }
@@ -268,6 +269,17 @@ return {
       local side = choose(request.arguments[2], { V = "vacuum", A = "atmosphere" })
       return ("PUMP %s %s"):format(host.station(request.arguments[1] or ""), side)
     end },
+    MCAR = { does = "CARRIER", run = function(request)
+      local name = request.arguments[2] or ""
+      return ("CARRIER %s%s"):format(host.station(request.arguments[1] or ""), name ~= "" and " name=" .. host.typed(name) or "")
+    end },
+    MPRT = { does = "PORT", run = function(request)
+      local state = choose(request.arguments[2], { P = "placed", C = "clamped", D = "docked", O = "open", M = "mapped" })
+      return ("PORT %s %s"):format(host.station(request.arguments[1] or ""), state)
+    end },
+    MTKA = { does = "TAKE_AWAY", run = function(request)
+      return "TAKE_AWAY " .. host.station(request.arguments[1] or "")
+    end },
     MWAT = { does = "WAIT", run = function(request)
       local ms = (request.arguments[1] or ""):match("^%d+$") or host.refuse("BAD_ARGUMENT", "MWAT")
       return ("WAIT %.17g"):format(ms / 1000)
@@ -363,6 +375,8 @@ return {
     PINS_UP = "0901", DOOR_SHUT = "0902", DOOR_BLOCKED = "0903", DOOR_TIMEOUT = "0904", FLIP_TIMEOUT = "0905",
     FLIP_NOT_CLAMPED = "0906", PROCESS_RUNNING = "0907", CLEANING = "0908", STATION_TIMEOUT = "0909",
     WRONG_PRESSURE = "0910", BOTH_OPEN = "0911", DOOR_OPEN = "0912",
+    PORT_NOT_OPEN = "0913", PORT_ENTERED = "0914", NO_CARRIER = "0915", CARRIER_THERE = "0916",
+    HANDSHAKE_TIMEOUT = "0917",
   },
   other_error = "0999",
   states = { idle = "0", running = "1", held = "2" },

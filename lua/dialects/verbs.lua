@@ -26,8 +26,8 @@ end
 -- The most arguments of a verb. Verbs that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
-  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, PUMP = 2, AWAT = 2, MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
-  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
+  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, PUMP = 2, AWAT = 2, CARR = 2, PORT = 2, TAKE = 1,
+  MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0, ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
   GVER = 0,
 }
 
@@ -215,6 +215,17 @@ return {
       return ("WAIT_FOR %s %s"):format(host.station(request.arguments[1] or ""),
         seconds:match("^%d*%.?%d*$") or host.refuse("BAD_ARGUMENT", seconds))
     end },
+    CARR = { does = "CARRIER", run = function(request)
+      local name = request.arguments[2] or ""
+      return ("CARRIER %s%s"):format(host.station(request.arguments[1] or ""), name ~= "" and " name=" .. host.typed(name) or "")
+    end },
+    PORT = { does = "PORT", run = function(request)
+      local state = (request.arguments[2] or ""):match("^%l+$") or host.refuse("BAD_ARGUMENT", "PORT")
+      return ("PORT %s %s"):format(host.station(request.arguments[1] or ""), state)
+    end },
+    TAKE = { does = "TAKE_AWAY", run = function(request)
+      return "TAKE_AWAY " .. host.station(request.arguments[1] or "")
+    end },
     MOVE = { does = "MOVE", run = values("MOVE", AXES, TURNS, true) },
     LINE = { does = "LINE", run = values("LINE", { "dx", "dy", "dz", "speed" }, {}) },
     VALV = { does = "VALVE", run = function(request)
@@ -303,6 +314,8 @@ return {
     PINS_UP = "0121", DOOR_SHUT = "0122", DOOR_BLOCKED = "0123", DOOR_TIMEOUT = "0124", FLIP_TIMEOUT = "0125",
     FLIP_NOT_CLAMPED = "0126", PROCESS_RUNNING = "0127", CLEANING = "0128", STATION_TIMEOUT = "0129",
     WRONG_PRESSURE = "0130", BOTH_OPEN = "0131", DOOR_OPEN = "0132",
+    PORT_NOT_OPEN = "0133", PORT_ENTERED = "0134", NO_CARRIER = "0135", CARRIER_THERE = "0136",
+    HANDSHAKE_TIMEOUT = "0137",
   },
   other_error = "0999",
   states = { idle = "idle", running = "moving", held = "paused" },

@@ -191,7 +191,7 @@ end
 -- The most words behind a command's own words; for other commands their options tell.
 local MOST = {
   HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
-  OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, AWAIT = 2, PUMP = 2, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
+  OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, AWAIT = 2, PUMP = 2, CARRIER = 2, PORT = 2, REMOVE = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
   ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
   ["RQ AXES"] = 0, ["RQ FOUND"] = 1,
 }
@@ -259,6 +259,17 @@ return {
       local seconds = request.words[3] or ""
       return ("WAIT_FOR %s %s"):format(host.station(request.words[2] or ""),
         seconds:match("^%d*%.?%d*$") or host.refuse("BAD_ARGUMENT", seconds))
+    end },
+    CARRIER = { does = "CARRIER", run = function(request)
+      local name = request.words[3] or ""
+      return ("CARRIER %s%s"):format(host.station(request.words[2] or ""), name ~= "" and " name=" .. host.typed(name) or "")
+    end },
+    PORT = { does = "PORT", run = function(request)
+      local state = (request.words[3] or ""):match("^%u+$") or host.refuse("BAD_ARGUMENT", "PORT")
+      return ("PORT %s %s"):format(host.station(request.words[2] or ""), state:lower())
+    end },
+    REMOVE = { does = "TAKE_AWAY", run = function(request)
+      return "TAKE_AWAY " .. host.station(request.words[2] or "")
     end },
     PUMP = { does = "PUMP", run = function(request)
       local sides, side = { VACUUM = "vacuum", ATMOSPHERE = "atmosphere" }, request.words[3] or ""
@@ -342,6 +353,8 @@ return {
     PINS_UP = "0601", DOOR_SHUT = "0602", DOOR_BLOCKED = "0603", DOOR_TIMEOUT = "0604", FLIP_TIMEOUT = "0605",
     FLIP_NOT_CLAMPED = "0606", PROCESS_RUNNING = "0607", CLEANING = "0608", STATION_TIMEOUT = "0609",
     WRONG_PRESSURE = "0610", BOTH_OPEN = "0611", DOOR_OPEN = "0612",
+    PORT_NOT_OPEN = "0613", PORT_ENTERED = "0614", NO_CARRIER = "0615", CARRIER_THERE = "0616",
+    HANDSHAKE_TIMEOUT = "0617",
   },
   other_error = "0999",
   states = { idle = "IDLE", running = "BUSY", held = "HELD" },

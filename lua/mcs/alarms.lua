@@ -15,7 +15,7 @@ return function(native, lookup)
   local AT_SLOT, STATION = "GET PUT SWAP READY PATTERN", "GET PUT SWAP READY MAP TEACH PATTERN"
   local PLANNED = STATION .. " LINE"
   local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
-    .. " PUMP WAIT_FOR"
+    .. " PUMP WAIT_FOR CARRIER PORT TAKE_AWAY"
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
@@ -71,10 +71,15 @@ return function(native, lookup)
     DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
     PROCESS_RUNNING = { "check", "GET SWAP" },
     CLEANING = { "check", "GET PUT SWAP" },
-    STATION_TIMEOUT = { "check", "PUMP WAIT_FOR" },
+    STATION_TIMEOUT = { "check", "PUMP WAIT_FOR PORT TAKE_AWAY" },
     WRONG_PRESSURE = { "check", "GET PUT SWAP OPEN PUMP" },
     BOTH_OPEN = { "check", "OPEN" },
     DOOR_OPEN = { "check", "PUMP" },
+    PORT_NOT_OPEN = { "check", STATION },
+    PORT_ENTERED = { "check", "PORT TAKE_AWAY" },
+    NO_CARRIER = { "check", "CARRIER PORT TAKE_AWAY" },
+    CARRIER_THERE = { "check", "CARRIER" },
+    HANDSHAKE_TIMEOUT = { "check", "WAIT_FOR PORT TAKE_AWAY" },
     NOT_IN_PHASE = { "check", "CONTINUE" },
     NO_SUCH_SAVE = { "check", "RESTORE" },
     NOTHING_TO_UNDO = { "check", "UNDO" },

@@ -58,9 +58,10 @@ return function(native, wh)
   local mechanisms = make("mechanisms", native, patterns, lookup, arm, player, grips, truth)
   local align = make("align", native, patterns, lookup, arm, player, mechanisms)
   local targets = make("targets", native, lookup, align, mechanisms, stations, grips, planes)
-  local times = make("times", native, patterns, lookup, arm, player)
+  local ports = make("ports", native, patterns, lookup, arm, player, slot_map)
+  local times = make("times", native, patterns, lookup, arm, player, ports)
   local transfer, carrying = make("transfer", native, patterns, lookup, arm, player, targets, align, centring, alarms,
-    slot_map, times, truth)
+    slot_map, times, truth, ports)
   local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying, own.attempt)
   local flippers = make("flippers", native, patterns, lookup, arm, player, mechanisms, alarms)
   local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms, times)
@@ -71,8 +72,9 @@ return function(native, wh)
   local commands = {
     edge_scan = align.edge_scan, align = align.align, lift = mechanisms.lift, open = doors.open, close = doors.close,
     centring = centring.last, wait_for = times.wait_for, pump = times.pump, late = times.late,
+    carrier = ports.carrier, take_away = ports.take_away, port = ports.port,
     calibrate = make("calibration", native, patterns, lookup, arm, player, targets, align, carrying.carry),
-    teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map),
+    teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map, ports),
   }
   local added = make("added", native, lookup, arm, player, targets, align, centring, slot_map, times, own)
   for _, words in ipairs({ transfer, singles, tasks.words, added, make("faults", native, lookup, arm, alarms) }) do
@@ -83,7 +85,7 @@ return function(native, wh)
 
   -- The words that only ask.
   local queries = make("queries", native, lookup, wh, times.judge_stay)
-  queries.station, queries.now = stations.read, times.now
+  queries.station, queries.now, queries.port_map = stations.read, times.now, ports.port_map
 
   ------------------------------------------------------------------------------------------------------- the whole
 

@@ -63,8 +63,11 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     elbow = function() return { "left", "right" } end,
     up_or_down = function() return lookup.up_or_down.values end,
     side = function() return lookup.sides end,
+    port_state = function() return lookup.port_states end,
+    carrier = function() return native.layout.carriers end,
     pattern = own.names, door = names_of "doors", robot = names_of "robots", flips = flips_names,
     name = function() return {} end, save = states.names,
+    slots = function() return {} end, changes = function() return {} end,
   }
 
   local station_options = { gripper = "gripper", force = "switch" }
@@ -193,6 +196,43 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
       end
       return { { "wafer", taken or nil }, { "put", put_down or nil } }
     end, commands.swap, arguments[1], arguments[2], options)
+  end
+
+  -- "3" as a number, "1,3" as a list.
+  local function slots_of(text)
+    if not text or text:match("^%d+$") then
+      return text and math.tointeger(tonumber(text))
+    end
+    local list = {}
+    for slot in text:gmatch("[^,]+") do
+      list[#list + 1] = slot:match("^%d+$") and math.tointeger(tonumber(slot))
+    end
+    if not text:find("^%d+[%d,]*$") then
+      native.fail("BAD_ARGUMENT", ("wafers: %s (expected how many, or slots such as 1,3)"):format(lookup.quote(text)))
+    end
+    return list
+  end
+
+  -- "3:crossed,5:double" as a table.
+  local function changes_of(text)
+    local changes = text and {} or nil
+    for part in (text or ""):gmatch("[^,]+") do
+      local slot, how = part:match("^(%d+):(%a+)$")
+      if not slot then
+        native.fail("BAD_ARGUMENT", ("slots: %s (expected SLOT:HOW, such as 3:crossed)"):format(lookup.quote(part)))
+      end
+      changes[math.tointeger(tonumber(slot))] = how
+    end
+    return changes
+  end
+
+  local function carrier(arguments, options)
+    local name
+    local time = timed(function()
+      name = commands.carrier(arguments[1], { name = options.name, at = options.at, wafers = slots_of(options.wafers),
+        slots = changes_of(options.slots) })
+    end)
+    return tokens.pairs({ { "carrier", name }, time })
   end
 
   local function continue()
@@ -595,6 +635,13 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
                  does = "waits until nothing runs in the station by itself, at most so long" },
     PUMP = { takes = { "station", "side" }, run = moving(commands.pump),
              does = "brings a load lock to vacuum or to atmosphere, and waits until it has it" },
+    CARRIER = { takes = { "station" }, options = { name = "carrier", wafers = "slots", slots = "changes", at = "number" },
+                run = carrier,
+                does = "a carrier comes to a load port, at once or at a time in s; wafers=3 or wafers=1,3; slots=3:crossed" },
+    PORT = { takes = { "station", "port_state" }, run = moving(commands.port),
+             does = "brings a load port with its carrier to this state, and waits until it has it" },
+    TAKE_AWAY = { takes = { "station" }, run = moving(commands.take_away),
+                  does = "the carrier of a load port goes, with what lies in it" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
     FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault, breaks = true,
               does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },

@@ -28,7 +28,19 @@ return function(native)
     for slot, code in ipairs(codes) do
       copy[slot] = code
     end
-    known[station] = { mapped = true, codes = copy }
+    known[station] = { mapped = true, codes = copy, changes = of_station(station).changes }
+  end
+
+  -- Takes what a load port has mapped in place of all that was known of the station; `changes` tells one map from another.
+  function slot_map.take(station, changes, codes)
+    local entry = known[station]
+    if (entry and entry.changes or 0) ~= changes then
+      known[station] = nil
+      if codes then
+        slot_map.map(station, codes)
+      end
+      of_station(station).changes = changes
+    end
   end
 
   -- The slot's content is unknown from here on.
@@ -106,7 +118,7 @@ return function(native)
     local function copy(map)
       local copied = {}
       for station, entry in pairs(map) do
-        copied[station] = { mapped = entry.mapped, codes = {} }
+        copied[station] = { mapped = entry.mapped, codes = {}, changes = entry.changes }
         for slot, code in pairs(entry.codes) do
           copied[station].codes[slot] = code
         end

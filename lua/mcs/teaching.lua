@@ -7,7 +7,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm, player, targets, stations, slot_map)
+return function(native, patterns, lookup, arm, player, targets, stations, slot_map, ports)
   -- The search for the wafer: the distance from its expected height, mm, and the step.
   local SEARCH, STEP = 0.35, 0.01
   -- The motion through the beam: its speed, mm/s, and the distance before and after a rim, mm.
@@ -299,6 +299,7 @@ return function(native, patterns, lookup, arm, player, targets, stations, slot_m
   end
 
   local function by_touch(name, station, robot)
+    ports.check(name)
     local guess, solved = touching(name, station, stations.shift(station, robot))
     local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, guess.r[3] + solved.z }
     local result = result_of(station, robot, guess, at, solved.yaw)
@@ -347,6 +348,7 @@ return function(native, patterns, lookup, arm, player, targets, stations, slot_m
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(native.layout.grippers[target.gripper].name)))
     end
     arm.check_free()
+    ports.check(name)
     if native.sensor(target.gripper) then
       native.fail("WAFER_ON_GRIPPER", "TEACH takes the wafer in slot 1")
     end

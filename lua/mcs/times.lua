@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs = ipairs, math, pairs
 
-return function(native, patterns, lookup, arm, player)
+return function(native, patterns, lookup, arm, player, ports)
   local times = {}
 
   -- Times in a message, to a millisecond.
@@ -86,7 +86,9 @@ return function(native, patterns, lookup, arm, player)
   -- Call it before a GET, PUT or SWAP moves anything.
   function times.check(word, target)
     local station = lookup.station(target.station)
-    if station.takes_time then
+    if station.is_port then
+      ports.check(target.station)
+    elseif station.takes_time then
       check_pressure(station, target.robot)
       CHECKS[word](target, station)
     end
@@ -104,13 +106,16 @@ return function(native, patterns, lookup, arm, player)
         names[#names + 1] = other.takes_time and name or nil
       end
       local expected = #names > 0 and "a station that takes time: " .. lookup.listed(names)
-        or "none: no station of the layout has `process`, `clean` or `pump`"
+        or "none: no station of the layout has `process`, `clean` or `pump`, or is a load port"
       native.fail("BAD_ARGUMENT", ("station: %s (expected %s)"):format(lookup.quote(station.name), expected))
     end
   end
 
   -- Names the thing that has not ended in the station, for a message.
   local function what_runs(station)
+    if station.is_port then
+      return ports.how_is(station.name, station.index)
+    end
     local _, to = native.pressure(station.index)
     if to then
       return ("it is on its way to %s"):format(to)
@@ -143,6 +148,9 @@ return function(native, patterns, lookup, arm, player)
     local rest = native.rest(station.index)
     if rest then
       await(station, timeout or math.min(rest + GRACE, lookup.ranges.seconds[2]))
+    end
+    if station.is_port then
+      ports.fail_if_timed_out(name, station.index)
     end
   end
 

@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, table, type = ipairs, math, pairs, pcall, select, table, type
 
-return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times, truth)
+return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times, truth, ports)
   local transfer = {}
 
   ------------------------------------------------------------------------------------------------ GET and PUT
@@ -412,6 +412,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
   local function ready(station, slot, options)
     local target = targets.at("get", station, slot, options)
     arm.check_free()
+    ports.check(station)
     target.loaded = native.sensor(target.gripper)
     player.play(patterns.ready, target)
   end
@@ -437,6 +438,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
   local function map(name, options)
     local target, station = map_target(name, options)
     arm.check_free()
+    ports.check(name)
     player.play(patterns.map, target)
     local codes = native.scan(station.index, target.robot, targets.shift(station, target.robot))
     slot_map.map(name, codes)

@@ -1,4 +1,5 @@
-/* The tables: where wafers lie, expectations, commands, events, how the time was spent, and how to reproduce the run. */
+/* The tables: where wafers lie, expectations, commands, what stations did, events, how the time was spent, and how to reproduce
+   the run. */
 (function (W) {
     'use strict';
 
@@ -100,6 +101,24 @@
             '|dr_proj_xy| (mm)', 'n1_proj_n2', 'more'], rows, 'Nothing happened in this run.');
     }
 
+    function whatBegins(told) {
+        return told.kind === 'port_begins' ? `${told.step}${told.carrier ? ' of ' + told.carrier : ''}`
+            : told.kind === 'pump_begins' ? 'to ' + told.side : told.kind.replace('_begins', '');
+    }
+
+    /* The own doings of stations: each begin with its end. Null in a cell whose stations do nothing. */
+    function stations(doc) {
+        const all = doc.run.station_events || [];
+        const endOf = (i) => all.slice(i + 1).find((other) => other.station === all[i].station && other.slot === all[i].slot
+            && /_(ends|cut|timeout)$/.test(other.kind));
+        const rows = all.map((each, i) => [each, endOf(i)]).filter(([each]) => each.kind.endsWith('_begins'))
+            .map(([each, end]) => () => row([goTo(each.utime / 1e6), each.station, num(each.slot === null ? W.DASH
+                : String(each.slot)), whatBegins(each), each.wafer || W.DASH, end ? goTo(end.utime / 1e6) : 'goes on'],
+            end && !end.kind.endsWith('_ends') ? 'bad' : null));
+        return rows.length === 0 ? null : section('stations', 'Stations', ['begins (s)', 'station', 'slot', 'what', 'wafer',
+            'ends (s)'], rows, '');
+    }
+
     const SHARES = [['loaded_s', 'moving, loaded', 's0'], ['empty_s', 'moving, empty', 's5'],
         ['vacuum_s', 'waiting for vacuum', 's3'], ['handover_s', 'handing over', 's2'], ['waiting_s', 'waiting', 's4']];
 
@@ -168,6 +187,7 @@
                 W.clock.on('growth', () => renew(doc, own, kept));
                 return;
             }
-            host.append(wafers(doc), expectations(doc), commands(doc), events(doc), clearances(doc), throughput(doc));
+            host.append(...[wafers(doc), expectations(doc), commands(doc), stations(doc), events(doc), clearances(doc),
+                throughput(doc)].filter((part) => part !== null));
         } };
 }(window.Waferhand));

@@ -89,6 +89,8 @@ function cases.wrong_values()
     move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
     wait_for = { station, { "timeout: ", 0, with(-1, 1e7) } }, now = {},
     pump = { station, { "state: ", "vacuum", { "air", 5, {}, NIL } } },
+    carrier = { station, options }, port = { station, { "state: ", "open", { "absent", 5, {}, NIL } } },
+    take_away = { station }, port_map = { station },
     late = { { "how: ", "tell", { "never", 5, {}, NIL } } }, expect_within = { wafer, station, number("seconds", 1, -1, 1e7) },
     wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7), { "mechanism: ", nil, { 5, "", "EE", "B", true, {} } } },
     fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },

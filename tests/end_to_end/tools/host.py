@@ -196,22 +196,26 @@ COMMANDS = {
     "prompt": {"get": "GET A 1", "put": "PUT A 1", "align": "ALIGN P", "continue": "CONTINUE", "home": "HOME", "recover": "RECOVER",
                "alarm": "ALARM %s", "valve": "VALVE EE 1", "holder": 'HOLDER "Wafer 1"', "restore": "RESTORE X", "undo": "UNDO",
                "open": "OPEN DOOR", "close": "CLOSE DOOR", "flip": "FLIP FLIPPER", "teach": "TEACH A", "get_flipper": "GET FLIPPER 1",
-               "put_flipper": "PUT FLIPPER 1", "pump": "PUMP LL vacuum", "wait_for": "WAIT_FOR LL 60"},
+               "put_flipper": "PUT FLIPPER 1", "pump": "PUMP LL vacuum", "wait_for": "WAIT_FOR LL 60",
+               "carrier": "CARRIER LP", "take_away": "TAKE_AWAY LP"},
     "words": {"get": "PICK A SLOT 1", "put": "PLACE A SLOT 1", "align": "ALIGN P", "continue": "GO", "home": "HOME",
               "recover": "RETRACT", "alarm": "ALARM %s", "valve": "VAC EE OFF", "holder": "RQ WAFERS Wafer 1",
               "restore": "RESTORE X", "undo": "UNDO", "open": "OPEN DOOR", "close": "CLOSE DOOR", "flip": "FLIP CLAMP",
               "teach": "TEACH A", "get_flipper": "PICK FLIPPER", "put_flipper": "PLACE FLIPPER",
-              "pump": "PUMP LL VACUUM", "wait_for": "AWAIT LL 60"},
+              "pump": "PUMP LL VACUUM", "wait_for": "AWAIT LL 60",
+              "carrier": "CARRIER LP", "take_away": "REMOVE LP"},
     "dollar": {"get": "MTRS,G,A,1", "put": "MTRS,P,A,1", "align": "MALN,P", "continue": "MTRN", "home": "INIT", "recover": "MRTR",
                "alarm": "CALM,%s", "valve": "CVAC,EE,0", "holder": "RLOC,Wafer 1", "restore": "CRES,X", "undo": "CUND",
                "open": "MDOP,DOOR", "close": "MDCL,DOOR", "flip": "MFLP,CLAMP", "teach": "MTCH,A",
                "get_flipper": "MTRS,G,FLIPPER,1", "put_flipper": "MTRS,P,FLIPPER,1",
-               "pump": "MPMP,LL,V", "wait_for": "MAWT,LL,60"},
+               "pump": "MPMP,LL,V", "wait_for": "MAWT,LL,60",
+               "carrier": "MCAR,LP", "take_away": "MTKA,LP"},
     "verbs": {"get": "GETW(A,1)", "put": "PUTW(A,1)", "align": "ALGN(P)", "continue": "CONT()", "home": "ORGN()", "recover": "RETR()",
               "alarm": "ALRM(%s)", "valve": "VALV(EE,off)", "holder": "GLOC(Wafer 1)", "restore": "REST(X)", "undo": "UNDO()",
               "open": "OPEN(DOOR)", "close": "CLOS(DOOR)", "flip": "FLIP(CLAMP)", "teach": "TECH(A)",
               "get_flipper": "GETW(FLIPPER,1)", "put_flipper": "PUTW(FLIPPER,1)",
-              "pump": "PUMP(LL,vacuum)", "wait_for": "AWAT(LL,60)"},
+              "pump": "PUMP(LL,vacuum)", "wait_for": "AWAT(LL,60)",
+              "carrier": "CARR(LP)", "take_away": "TAKE(LP)"},
 }
 
 # The command to which an alarm comes, if it is not GET.
@@ -223,6 +227,7 @@ COMES_TO = {
     "OFF_SENSOR": "align", "TOO_ECCENTRIC": "align", "CENTRE_NOT_SURE": "align", "NOTCH_NOT_SURE": "align", "BAD_SCAN": "align",
     "DOOR_BLOCKED": "close", "DOOR_TIMEOUT": "open", "NOT_TOUCHED": "teach", "FLIP_TIMEOUT": "flip", "FLIP_NOT_CLAMPED": "flip",
     "STATION_TIMEOUT": "wait_for", "WRONG_PRESSURE": "pump", "BOTH_OPEN": "open", "DOOR_OPEN": "pump",
+    "PORT_ENTERED": "take_away", "NO_CARRIER": "take_away", "CARRIER_THERE": "carrier", "HANDSHAKE_TIMEOUT": "take_away",
 }
 
 

@@ -6,9 +6,17 @@
 static void what_is_written_is_read(void **state) {
     (void)state;
     const wh_station_event_record_t events[] = {
-        {3, {WH_CLOCK_PROCESS_BEGINS, 0, 9, WH_FLOW_BOTH, 5770000, 60000000}},
-        {0, {WH_CLOCK_PUMP_ENDS, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_VACUUM, INT64_MAX, 0}},
-        {3, {WH_CLOCK_CLEAN_BEGINS, 24, WH_FLOW_NONE, WH_FLOW_BOTH, 0, 1}},
+        {3, {WH_CLOCK_PROCESS_BEGINS, 0, 9, WH_FLOW_BOTH, 5770000, 60000000}, WH_LOAD_PORT_STANDS, ""},
+        {0,
+         {WH_CLOCK_PUMP_ENDS, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_VACUUM, INT64_MAX, 0},
+         WH_LOAD_PORT_STANDS,
+         ""},
+        {3, {WH_CLOCK_CLEAN_BEGINS, 24, WH_FLOW_NONE, WH_FLOW_BOTH, 0, 1}, WH_LOAD_PORT_STANDS, ""},
+        {2,
+         {WH_CLOCK_PORT_ENDS, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH, 7, 3},
+         WH_LOAD_PORT_UNDOCK,
+         "C 1 x=2"},
+        {2, {WH_CLOCK_CARRIER_WENT, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH, 7, 3}, WH_LOAD_PORT_TP3, ""},
     };
     for (size_t i = 0; i < sizeof events / sizeof events[0]; ++i) {
         char text[WH_STATION_TOLD_BYTES];
@@ -22,6 +30,8 @@ static void what_is_written_is_read(void **state) {
         assert_int_equal(read.event.side, events[i].event.side);
         assert_int_equal(read.event.at_us, events[i].event.at_us);
         assert_int_equal(read.event.us, events[i].event.us);
+        assert_int_equal(read.step, events[i].step);
+        assert_string_equal(read.carrier, events[i].carrier);
     }
 }
 
@@ -38,6 +48,11 @@ static void other_texts_are_refused(void **state) {
         "kind=process_dances station=0 slot=1 wafer=0 side=both at=1 us=1",
         "kind=process_begins station=0 slot=1 wafer=0 side=both at=-1 us=1",
         "kind=process_begins station=0 slot=1 wafer=0 side=both at=1",
+        "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1",
+        "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=jump carrier=C1",
+        "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=dock",
+        "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=dock carrier="
+        "0123456789012345678901234567890123456789012345678901234567890123456789",
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; ++i) {
         wh_station_event_record_t read;

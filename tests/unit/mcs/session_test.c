@@ -75,8 +75,9 @@ static void every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP", "OK ALARM ALIGN ANGLE AWAIT AXES CALIBRATE CLEAR CLOSE CONTINUE DISTANCE EDGE_SCAN FAULT "
-                 "FLIP GET HELP"},
+        {"HELP",
+         "OK ALARM ALIGN ANGLE AWAIT AXES CALIBRATE CARRIER CLEAR CLOSE CONTINUE DISTANCE EDGE_SCAN FAULT "
+         "FLIP GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
         {"FLIP EE", "ERROR 48 BAD_ARGUMENT: a command's argument is"},
     };
@@ -239,6 +240,10 @@ static const kind_t *find_kind(const char *name, size_t length) {
                                    {"SAVE", "n", {"Q", "5"}},
                                    {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
                                    {"SIDE", "vacuum", {"air", "5"}},
+                                   {"PORT_STATE", "open", {"air", "5"}},
+                                   {"CARRIER", "C1", {"Q", "5"}},
+                                   {"SLOTS", "1", {"x", "1.5", "-1", "inf"}},
+                                   {"CHANGES", "1:crossed", {"x", "1", "crossed:1"}},
                                    {"UP_OR_DOWN", "up", {"left", "5", "inf"}},
                                    {"SECONDS", "1", {"-1", "2000000", "x", "inf", "nan"}}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {

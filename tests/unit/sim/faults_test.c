@@ -59,6 +59,10 @@ static void what_no_cell_can_have_is_refused(void **state) {
     refuse_fault(&f, WH_STATUS_NOT_FINITE);
 }
 
+static bool needs_other(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_WAFER_DOUBLED || kind == WH_FAULT_E84_STUCK || kind == WH_FAULT_E84_LATE;
+}
+
 /* An offset that moves no wafer has no meaning: a fault with such an offset is a mistake, and so is
  * one with a wrong `other`. */
 static void only_a_wafers_fault_has_an_offset(void **state) {
@@ -67,7 +71,7 @@ static void only_a_wafers_fault_has_an_offset(void **state) {
         const bool of_wafer = wh_fault_is_of_wafer((wh_fault_kind_t)kind);
         for (int entry = 0; entry < 5; ++entry) {
             wh_fault_t f = wh_fault_make((wh_fault_kind_t)kind, 0, WH_REAL(0.001), 1, 9);
-            f.other = kind == WH_FAULT_WAFER_DOUBLED ? 1 : f.other;
+            f.other = needs_other((wh_fault_kind_t)kind) ? 1 : f.other;
             assert_int_equal(wh_fault_validate(&f, GRIPPERS, WAFERS), WH_OK);
             wh_real_t *const entries[] = {&f.offset.r.x, &f.offset.r.y, &f.offset.r.z};
             if (entry < 3) {
@@ -96,7 +100,7 @@ static void faults_are_made_ready_to_be_taken(void **state) {
         assert_int_equal(set_up(NULL), 0);
         command.seq = 0;
         wh_fault_t fault = wh_fault_make(kind, 0, WH_REAL(0.001), 2, 4);
-        fault.other = kind == WH_FAULT_WAFER_DOUBLED ? 1 : fault.other;
+        fault.other = needs_other(kind) ? 1 : fault.other;
         assert_int_equal(wh_fault_validate(&fault, GRIPPERS, WAFERS), WH_OK);
         bring(3, &fault);
         step(880, CLOSED);
@@ -110,7 +114,7 @@ static void faults_are_made_ready_to_be_taken(void **state) {
         assert_true(kind != WH_FAULT_WAFER_MISSING || wafers[0].base_from_wafer.r.z == WH_REAL(900 - 1e5));
         step(880, CLOSED);
         step(880, CLOSED);
-        assert_non_null(find(WH_EVENT_FAULT_CLEARED));
+        assert_int_equal(find(WH_EVENT_FAULT_CLEARED) != NULL, kind != WH_FAULT_WAFER_PLACED);
     }
 }
 
@@ -768,6 +772,35 @@ static void a_taken_wafers_fault_goes_on(void **state) {
     expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
 }
 
+/* A wafer that is placed stays there: the fault is over at once, and its slot is free. */
+static void a_placed_wafer_stays(void **state) {
+    (void)state;
+    wh_fault_t fault = wh_fault_make(WH_FAULT_WAFER_PLACED, 0, 0, 1, WH_FAULT_FOREVER);
+    for (int i = 0; i < 3; ++i) {
+        fault.offset = wh_test_at(10 * i, 20, 500);
+        fault.from = command.seq + 1;
+        bring(15, &fault);
+        step(880, CLOSED);
+        expect_event(WH_EVENT_FAULT_ARMED, 0, WH_NONE, 15);
+        assert_memory_equal(&answer.wafers[0].base_from_wafer, &fault.offset, sizeof fault.offset);
+        assert_int_equal(simulator.physics.faults.slots[15].phase, WH_FAULT_OVER);
+    }
+    step(880, CLOSED);
+    assert_int_equal(answer.event_count, 0);
+    assert_memory_equal(&answer.wafers[0].base_from_wafer, &fault.offset, sizeof fault.offset);
+}
+
+/* The steps of a handshake have numbers from 1. */
+static void a_handshakes_fault_names_its_step(void **state) {
+    (void)state;
+    wh_fault_t fault = wh_fault_make(WH_FAULT_E84_STUCK, 0, 0, 1, 9);
+    for (int32_t step = -1; step < 8; ++step) {
+        fault.other = step;
+        assert_int_equal(wh_fault_validate(&fault, GRIPPERS, WAFERS),
+                         step >= 1 && step <= WH_FAULT_E84_STEPS ? WH_OK : WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
 static void a_held_wafer_is_waited_for(void **state) {
     (void)state;
     pick();
@@ -811,6 +844,8 @@ int main(void) {
         cmocka_unit_test_setup(a_wafer_is_moved_and_put_back, set_up),
         cmocka_unit_test_setup(a_turn_that_just_passes_is_mended, set_up),
         cmocka_unit_test_setup(doubled_is_onto_the_other, set_up),
+        cmocka_unit_test_setup(a_placed_wafer_stays, set_up),
+        cmocka_unit_test_setup(a_handshakes_fault_names_its_step, set_up),
         cmocka_unit_test_setup(doubled_waits_while_the_other_is_held, set_up),
         cmocka_unit_test_setup(a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(two_faults_of_one_wafer, set_up),
