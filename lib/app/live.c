@@ -32,6 +32,7 @@ enum { FILE_PAGE, FILE_SCRIPTS, FILE_STYLE, FILE_FOREIGN, FILES };
 struct wh_live {
     wh_live_options_t options;
     wh_mcs_listener_t next;
+    wh_live_control_t control;
     wh_live_pace_t pace;   /* the stepping thread's */
     wh_showing_t *showing; /* null: no cell. The stepping thread changes it, with the lock */
     pthread_t thread;
@@ -52,22 +53,35 @@ const wh_option_t wh_live_options[] = {
      "Show the cell live in a browser: serve its page there, in this machine alone unless another address is "
      "given (default 127.0.0.1:8765)",
      WH_OPTION_ADDRESS, .variable = offsetof(wh_live_arguments_t, address)},
+    {"page-control", 0, NULL,
+     "With --page: let who has the token that is printed pause, step and pace a run, or test a served cell",
+     WH_OPTION_FLAG, .variable = offsetof(wh_live_arguments_t, controls)},
     {"open", 0, NULL, "With --page: open it in the browser", WH_OPTION_FLAG,
      .variable = offsetof(wh_live_arguments_t, opens)},
     {0}};
 
 void wh_live_check(const void *filled, struct argp_state *state) {
     const wh_live_arguments_t *arguments = filled;
-    if (arguments->opens && !arguments->address) {
-        argp_error(state, "--open goes with --page");
+    if ((arguments->opens || arguments->controls) && !arguments->address) {
+        argp_error(state, "--%s goes with --page", arguments->opens ? "open" : "page-control");
     }
 }
 
 /* -------------------------------------------------------------------------------------- the page's thread */
 
 static wh_live_state_t state_of(const wh_live_t *live) {
-    return (wh_live_state_t){live->options.title, live->options.reproduce, live->id, live->options.rate,
-                             live->meter.pace};
+    static const char *const controlled[] = {NULL, "run", "tester"};
+    const wh_live_control_t *control = &live->control;
+    return (wh_live_state_t){.title = live->options.title,
+                             .reproduce = live->options.reproduce,
+                             .id = live->id,
+                             .rate = control->controlled == WH_LIVE_RUN
+                                         ? (double)__atomic_load_n(&control->rate_ppm, __ATOMIC_RELAXED) / 1e6
+                                         : live->options.rate,
+                             .pace = live->meter.pace,
+                             .control = controlled[control->controlled],
+                             .lists_faults = control->controlled == WH_LIVE_TESTER,
+                             .is_paused = __atomic_load_n(&control->is_paused, __ATOMIC_RELAXED)};
 }
 
 static void tell_growth(wh_live_t *live) {
@@ -151,12 +165,20 @@ static char *make_document(void *user, size_t *size) {
     return wh_live_kept_document(&live->kept, &state, live->feed.last + 1, size);
 }
 
+static unsigned take_control(void *user, const char *body, size_t size, char **answer) {
+    wh_live_t *live = user;
+    const unsigned status = wh_live_control_take(&live->control, body, size, answer);
+    live->kept.has_news = live->kept.record.layout; /* so that all pages hear of it */
+    return status;
+}
+
 static void *serve(void *user) {
     wh_live_t *live = user;
     while (!__atomic_load_n(&live->is_ending, __ATOMIC_ACQUIRE)) {
         wh_http_wait(live->http, LOOK_US, live->wake);
         pthread_mutex_lock(&live->lock);
         look(live);
+        wh_live_control_drain(&live->control);
         wh_http_serve(live->http);
         pthread_mutex_unlock(&live->lock);
     }
@@ -188,7 +210,7 @@ static void take_slice(void *user, const wh_command_t *command, const wh_state_t
         wh_showing_slice(live->showing, command, state);
     }
     if (live->options.paces && state->status == WH_OK) {
-        wh_live_pace_wait(&live->pace, live->options.rate, state->utime);
+        wh_live_control_slice(&live->control, &live->pace, state->utime, wh_live_rest, live);
     }
 }
 
@@ -278,6 +300,9 @@ static void hear_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t what,
     if (news) {
         wh_showing_rest(live->showing);
         wh_showing_tell(live->showing, news);
+    }
+    if (what == WH_MCS_COMMAND_ENDED) {
+        wh_live_control_command(&live->control, wh_live_rest, live);
     }
 }
 
@@ -372,6 +397,8 @@ static bool open_server(wh_live_t *live, const char *address) {
                                      .feed = &live->feed,
                                      .id = live->id,
                                      .document = make_document,
+                                     .control =
+                                         live->control.controlled != WH_LIVE_NO_CONTROL ? take_control : NULL,
                                      .user = live};
     live->http = wh_http_open(address, &source, problem);
     if (!live->http) {
@@ -395,6 +422,7 @@ static bool start(wh_live_t *live) {
 }
 
 static void free_live(wh_live_t *live) {
+    wh_live_control_end(&live->control);
     wh_http_close(live->http);
     wh_showing_close(live->showing);
     wh_live_kept_begin(&live->kept, NULL);
@@ -409,6 +437,42 @@ static void free_live(wh_live_t *live) {
     free(live);
 }
 
+/* False, with a message: nobody can command this, or there is no token. */
+static bool open_control(wh_live_t *live, const wh_live_arguments_t *arguments) {
+    const wh_live_options_t *options = &live->options;
+    const wh_live_controlled_t controlled = arguments->controls ? options->controlled : WH_LIVE_NO_CONTROL;
+    if (arguments->controls && options->uncontrolled) {
+        fprintf(stderr, "--page-control: %s\n", options->uncontrolled);
+        return false;
+    }
+    if (!wh_live_control_begin(&live->control, controlled, options->rate)) {
+        fprintf(stderr, "--page-control: no token: %s\n", strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+void wh_live_set_tester(wh_live_t *live, const char *address) {
+    if (live) {
+        pthread_mutex_lock(&live->lock);
+        (void)snprintf(live->control.tester, sizeof live->control.tester, "%s", address);
+        pthread_mutex_unlock(&live->lock);
+    }
+}
+
+/* Says where the page is. The token stands behind a #, which no browser sends to anybody. */
+static void tell_place(const wh_live_t *live, bool opens) {
+    const bool is_controlled = live->control.controlled != WH_LIVE_NO_CONTROL;
+    char place[WH_HTTP_PLACE_BYTES + WH_LIVE_TOKEN + 16];
+    (void)snprintf(place, sizeof place, "%s/%s%s", wh_http_place(live->http), is_controlled ? "#token=" : "",
+                   is_controlled ? live->control.token : "");
+    fprintf(stderr, "%s: page at http://%s%s\n", live->options.speaker, place,
+            wh_http_is_local(live->http) ? "" : ": whoever reaches this machine can see the cell");
+    if (opens) {
+        wh_live_browse(live->options.speaker, place);
+    }
+}
+
 bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const wh_live_options_t *options) {
     *made = NULL;
     if (!arguments->address) {
@@ -421,16 +485,12 @@ bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const 
                    (unsigned)getpid());
     live->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     (void)pthread_mutex_init(&live->lock, NULL);
-    if (live->wake < 0 || !make_files(live) || !open_server(live, arguments->address) || !start(live)) {
+    if (live->wake < 0 || !open_control(live, arguments) || !make_files(live) ||
+        !open_server(live, arguments->address) || !start(live)) {
         free_live(live);
         return false;
     }
-    const char *place = wh_http_place(live->http);
-    fprintf(stderr, "%s: page at http://%s/%s\n", options->speaker, place,
-            wh_http_is_local(live->http) ? "" : ": whoever reaches this machine can see the cell");
-    if (arguments->opens) {
-        wh_live_browse(options->speaker, place);
-    }
+    tell_place(live, arguments->opens);
     *made = live;
     return true;
 }

@@ -11,25 +11,29 @@
 #include "../mcs/partners.h"
 #include "../text/options.h"
 #include "../view/showing.h"
+#include "live_control.h"
 
 /* Zero it to begin with. */
 typedef struct {
     const char *address; /* null: no page is wanted; empty: the usual one */
     bool opens;          /* in a browser */
+    bool controls;       /* who has the token may command */
 } wh_live_arguments_t;
 
-/* --page and --open, into a wh_live_arguments_t; the check of their table. */
+/* --page, --page-control and --open, into a wh_live_arguments_t; the check of their table. */
 extern const wh_option_t wh_live_options[];
 void wh_live_check(const void *filled, struct argp_state *state);
 
 /* The page says this of the program. All texts are borrowed. */
 typedef struct {
-    const char *speaker;   /* the subcommand, which says where the page is */
-    const char *title;     /* the script's or layout's path */
-    const char *reproduce; /* the command that makes the run again; null: none does */
-    double rate;           /* of simulated time to the wall clock; 0: as fast as it goes */
-    bool stays;            /* the page stays when a script's run has ended, until a signal comes */
-    bool paces;            /* slices wait for that rate here; otherwise somebody else sees to it */
+    const char *speaker;             /* the subcommand, which says where the page is */
+    const char *title;               /* the script's or layout's path */
+    const char *reproduce;           /* the command that makes the run again; null: none does */
+    const char *uncontrolled;        /* why --page-control is not offered; null: it is */
+    wh_live_controlled_t controlled; /* what it then commands */
+    double rate;                     /* of simulated time to the wall clock; 0: as fast as it goes */
+    bool stays;                      /* the page stays when a script's run has ended, until a signal comes */
+    bool paces;                      /* slices wait for that rate here; otherwise somebody else sees to it */
 } wh_live_options_t;
 
 /* An open page; null where none is wanted, which every function takes. */
@@ -50,6 +54,9 @@ void wh_live_heard(void *user, const wh_transcript_entry_t *entry);
 
 /* Nothing moves for now: what moved last is shown. `user` is the wh_live_t. The stepping thread's. */
 void wh_live_rest(void *user);
+
+/* The tester's port, once it listens, where a page commands that. */
+void wh_live_set_tester(wh_live_t *live, const char *address);
 
 /* False if a page is wanted of this cell, and it has nothing to show; standard error says so. */
 bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout);

@@ -12,7 +12,7 @@ extern char **environ;
 /* A shell leaves the browser to itself, so that nobody has to wait for it. */
 void wh_live_browse(const char *speaker, const char *place) {
     char url[200];
-    (void)snprintf(url, sizeof url, "http://%s/", place);
+    (void)snprintf(url, sizeof url, "http://%s", place);
     const char *const words[] = {"sh", "-c", "command -v xdg-open >/dev/null && { xdg-open \"$1\" & }",
                                  "sh", url,  NULL};
     char *arguments[sizeof words / sizeof words[0]];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../print/record_print.h"
+#include "../sim/faults.h"
 #include "../text/array.h"
 #include "live_kept.h"
 
@@ -85,10 +86,19 @@ static json_t *list_from(const wh_live_kept_t *kept, size_t list, size_t first) 
 
 /* -------------------------------------------------------------------------------------------------- state */
 
+static json_t *fault(const void *nothing, size_t i) {
+    (void)nothing;
+    return json_string(wh_fault_name((wh_fault_kind_t)i));
+}
+
 static json_t *state_of(const wh_live_kept_t *kept, const wh_live_state_t *state) {
-    json_t *object = wh_json_set(json_object(), "rate %g pace %g over %i dropped %i",
-                                 state->rate > 0 ? state->rate : HUGE_VAL,
-                                 state->pace >= 0 ? state->pace : HUGE_VAL, kept->is_over, kept->has_dropped);
+    json_t *object =
+        wh_json_set(json_object(), "rate %g pace %g over %i dropped %i control %s paused %i",
+                    state->rate > 0 ? state->rate : HUGE_VAL, state->pace >= 0 ? state->pace : HUGE_VAL,
+                    kept->is_over, kept->has_dropped, state->control, state->is_paused);
+    if (state->lists_faults) {
+        wh_json_put(object, "faults", wh_json_list(fault, NULL, WH_FAULT_KINDS));
+    }
     return kept->is_over ? wh_json_set(object, "good %i failure %s", kept->is_good, kept->failure) : object;
 }
 

@@ -54,7 +54,9 @@ void wh_live_kept_news(wh_live_kept_t *kept, const wh_news_t *news);
 /* The page is told this of the program. */
 typedef struct {
     const char *title, *reproduce;
-    const char *id;    /* of this process */
+    const char *id;      /* of this process */
+    const char *control; /* what the page may command, a word; null: nothing */
+    bool is_paused, lists_faults;
     double rate, pace; /* rate: 0, as fast as it goes; pace: what comes of it, below 0 if not known */
 } wh_live_state_t;
 

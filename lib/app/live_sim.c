@@ -46,7 +46,10 @@ static void hear(void *user, const waferhand_mcs *message) {
 bool wh_live_sim_open(wh_live_sim_t *sim, const wh_live_arguments_t *arguments,
                       wh_sim_process_t *simulation) {
     const wh_mcs_listener_t nobody = {0};
-    const wh_live_options_t wanted = {.speaker = "sim", .title = simulation->server.layout->path};
+    const wh_live_options_t wanted = {
+        .speaker = "sim",
+        .title = simulation->server.layout->path,
+        .uncontrolled = "motion control commands this cell over LCM (expected run or serve)"};
     if (!wh_live_open(&sim->live, arguments, &wanted)) {
         return false;
     }

@@ -182,10 +182,12 @@ static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
 
 /* With a page, if one is wanted, which ends with the run. */
 static int run(arguments_t *arguments, wh_mcs_link_t *link) {
-    const wh_live_options_t wanted = {.speaker = "mcs",
-                                      .title =
-                                          arguments->layout ? arguments->layout : arguments->run.run.script,
-                                      .rate = arguments->link.client.rate};
+    const wh_live_options_t wanted = {
+        .speaker = "mcs",
+        .title = arguments->layout ? arguments->layout : arguments->run.run.script,
+        .uncontrolled =
+            "the simulator is another process, which this one cannot pause (expected run or serve)",
+        .rate = arguments->link.client.rate};
     if (!wh_live_open(&arguments->run.live, &arguments->page, &wanted)) {
         return WH_EXIT_USAGE;
     }

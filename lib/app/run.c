@@ -127,6 +127,7 @@ static bool open_page(arguments_t *arguments, char **command) {
                                       .title = arguments->run.run.script,
                                       .reproduce = *command,
                                       .rate = arguments->rate > 0 ? arguments->rate : 1,
+                                      .controlled = WH_LIVE_RUN,
                                       .stays = true,
                                       .paces = true};
     return wh_live_open(&arguments->run.live, &arguments->page, &wanted);

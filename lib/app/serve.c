@@ -466,15 +466,25 @@ static bool run_host(served_t *served, arguments_t *arguments) {
 }
 
 /* Opens all ports and the transcript, and says so. */
-static bool listen_all(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
-    return open_ports(host, arguments, argc, argv) && wh_serve_beside_open(&arguments->beside, host) &&
-           open_transcript(host, arguments) && wh_serve_beside_ready(&arguments->beside, host);
+static bool listen_all(served_t *served, const arguments_t *arguments, int argc, char **argv) {
+    wh_host_t *host = &served->host;
+    if (!open_ports(host, arguments, argc, argv) || !wh_serve_beside_open(&arguments->beside, host)) {
+        return false;
+    }
+    for (size_t i = 0; i < host->count; ++i) {
+        if (host->controllers[i]->leader->is_tester) {
+            wh_live_set_tester(served->live, host->controllers[i]->line.port.place);
+        }
+    }
+    return open_transcript(host, arguments) && wh_serve_beside_ready(&arguments->beside, host);
 }
 
 static bool open_page(served_t *served, const arguments_t *arguments) {
     wh_host_t *host = &served->host;
-    const wh_live_options_t wanted = {
-        .speaker = "serve", .title = arguments->layout.path, .rate = rate_of(arguments)};
+    const wh_live_options_t wanted = {.speaker = "serve",
+                                      .title = arguments->layout.path,
+                                      .controlled = WH_LIVE_TESTER,
+                                      .rate = rate_of(arguments)};
     const bool opened = wh_live_open(&served->live, &arguments->page, &wanted);
     if (served->live) {
         host->next = wh_live_listener(served->live, &host->next);
@@ -486,6 +496,9 @@ static bool open_page(served_t *served, const arguments_t *arguments) {
 
 /* Opens the page, and tests what would be too late at the end. */
 static bool may_begin(served_t *served, arguments_t *arguments) {
+    if (arguments->page.controls && !arguments->beside.control) {
+        arguments->beside.control = "127.0.0.1:0"; /* the page is a tester */
+    }
     served->host.allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
     return open_page(served, arguments) && wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
            check_coverage(arguments->coverage) && are_writable(arguments);
@@ -502,7 +515,7 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
         host->next = wh_run_listener(&served.signals);
     }
     const bool good = may_begin(&served, arguments) && open_session(&served, arguments) &&
-                      listen_all(host, arguments, argc, argv) && run_host(&served, arguments);
+                      listen_all(&served, arguments, argc, argv) && run_host(&served, arguments);
     return close_served(&served) && good ? WH_EXIT_MET : WH_EXIT_USAGE;
 }
 

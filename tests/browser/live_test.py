@@ -136,6 +136,50 @@ class Live(unittest.TestCase):
         self.assertEqual(page.js("return [document.querySelectorAll('b b, img, main script').length, document.scripts.length]"), [0, 2])
         self.assertEqual(page.faults(), [])
 
+    def test_control(self):
+        """Who comes with the token pauses, steps and goes on; the token leaves the address. Without it there are no buttons."""
+        page = self.page
+        served = pages.Served("run", "lua/examples/01_transfer.lua", "--page", "0", "--page-control")
+        self.addCleanup(served.kill)
+        self.addCleanup(page.driver.get, "about:blank")
+        token = next(line for line in served.lines if "#token=" in line).split("#token=")[1].strip()
+        page.visit(f"http://{served.place}/")
+        self.assertEqual(page.js("return document.getElementById('control')"), None)
+        page.driver.get("about:blank")
+        page.visit(f"http://{served.place}/#token={token}")
+        self.assertNotIn(token, page.js("return location.href"))
+        page.js("document.getElementById('pause').click()")
+        page.wait("return document.getElementById('liveline').textContent.includes('paused')")
+        self.assertEqual(page.text("#pause"), "Go on")
+        at = page.now()
+        page.js("document.getElementById('slice').click()")
+        page.wait(f"return Waferhand.clock.now > {at}")
+        self.assertAlmostEqual(page.now(), at + 0.001, places=6)
+        page.shoot("live_control")
+        page.js("document.getElementById('command').click()")
+        page.wait(f"return Waferhand.clock.now > {at} + 0.1 && document.getElementById('pause').textContent === 'Go on'", 30)
+        page.js("""const rate = document.getElementById('rate'); rate.value = '50'; rate.dispatchEvent(new Event('change'));
+            document.getElementById('pause').click()""")
+        page.wait("return document.getElementById('live').textContent.includes('over: passed')", 30)
+        self.assertEqual(page.now(), 8.283)
+        self.assertEqual(page.faults(), [])
+
+    def test_tester(self):
+        """A line from the page, with suggestions, and its answer."""
+        page = self.page
+        served = pages.Served("serve", "lua/layouts/paper.lua", "--dialect", "lua/dialects/prompt.lua", "--tcp", "127.0.0.1:0",
+                              "--page", "0", "--page-control")
+        self.addCleanup(served.kill)
+        self.addCleanup(page.driver.get, "about:blank")
+        served.said("control, ")
+        page.visit("http://" + next(line for line in served.lines if "#token=" in line).split("http://")[1].strip())
+        self.assertIn("FAULT leak gripper=EE", page.js("return Array.from(document.querySelectorAll('#lines option'), (each) => each.value)"))
+        page.js("document.getElementById('line').value = 'ALARM 42'; document.querySelector('#control form').requestSubmit()")
+        page.wait("return document.getElementById('answer').textContent.includes('OK fault=')", 20)
+        self.assertIn("ALARM 42", page.text("#card-ports"))
+        page.shoot("live_tester")
+        self.assertEqual(page.faults(), [])
+
     def test_another_site_gets_nothing(self):
         """A page of another origin can neither read the document nor the stream, nor show the page in a frame."""
         page = self.page

@@ -61,8 +61,8 @@
     /* In words: how fast the cell's time passes. */
     function pace(state) {
         const asked = typeof state.rate === 'number' ? `${W.figure(state.rate)}\u00d7 the wall clock` : 'as fast as it can';
-        if (state.over) {
-            return '';
+        if (state.over || state.paused) {
+            return state.over ? '' : 'paused';
         }
         if (typeof state.pace !== 'number') {
             return `pace: ${asked}`;
@@ -109,6 +109,12 @@
     live.start = function (doc) {
         document.getElementById('head').append(line());
         live.on(show);
+        live.on((state) => {
+            if (!live.isControlled) {
+                live.isControlled = true;
+                W.control.start(doc, state);
+            }
+        });
         W.clock.on('time', follow);
         W.clock.on('play', follow);
         W.source.follow((kind, what) => hear(doc, kind, what));

@@ -1,0 +1,253 @@
+#include "live_control.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "../host/address.h"
+#include "../text/array.h"
+#include "../text/clock.h"
+#include "../text/json.h"
+
+/* Looks again this often while a run is paused, us. */
+#define PAUSED_US 2000
+
+#define LEAST_RATE 0.001
+#define MOST_RATE 1000.0
+#define MOST_SLICES 1000000
+#define MOST_LINE 1000
+
+enum { OK = 200, ACCEPTED = 202, BAD = 400, FORBIDDEN = 403, UNAVAILABLE = 503 };
+
+/* ------------------------------------------------------------------------------------ the stepping thread */
+
+/* Waits while it is paused and no slice may pass. */
+static void hold(wh_live_control_t *control, void (*rest)(void *user), void *user) {
+    const struct timespec a_while = {0, PAUSED_US * 1000L};
+    rest(user);
+    while (__atomic_load_n(&control->is_paused, __ATOMIC_ACQUIRE)) {
+        if (__atomic_load_n(&control->slices, __ATOMIC_ACQUIRE) > 0) {
+            (void)__atomic_sub_fetch(&control->slices, 1, __ATOMIC_ACQ_REL);
+            return;
+        }
+        (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &a_while, NULL);
+    }
+}
+
+void wh_live_control_slice(wh_live_control_t *control, wh_live_pace_t *pace, int64_t run_us,
+                           void (*rest)(void *user), void *user) {
+    if (__atomic_load_n(&control->is_paused, __ATOMIC_RELAXED)) {
+        hold(control, rest, user);
+        wh_live_pace_begin(pace);
+        return;
+    }
+    wh_live_pace_wait(pace, (double)__atomic_load_n(&control->rate_ppm, __ATOMIC_RELAXED) / 1e6, run_us);
+}
+
+void wh_live_control_command(wh_live_control_t *control, void (*rest)(void *user), void *user) {
+    if (__atomic_exchange_n(&control->ends_at_command, false, __ATOMIC_ACQ_REL)) {
+        __atomic_store_n(&control->is_paused, true, __ATOMIC_RELEASE);
+        hold(control, rest, user);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- the tester */
+
+static bool connect_tester(wh_live_control_t *control) {
+    wh_address_t address;
+    if (control->is_connected) {
+        return true;
+    }
+    if (!wh_address_read(control->tester, &address)) {
+        return false;
+    }
+    control->fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    control->is_connected =
+        control->fd >= 0 && connect(control->fd, (const struct sockaddr *)&address.bytes, address.size) == 0;
+    if (!control->is_connected && control->fd >= 0) {
+        (void)close(control->fd);
+    }
+    return control->is_connected;
+}
+
+static void leave_tester(wh_live_control_t *control) {
+    if (control->is_connected) {
+        (void)close(control->fd);
+        control->is_connected = false;
+    }
+}
+
+void wh_live_control_drain(wh_live_control_t *control) {
+    char bytes[4096];
+    ssize_t got = 1;
+    while (control->is_connected && got > 0) {
+        got = recv(control->fd, bytes, sizeof bytes, MSG_DONTWAIT);
+        if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) {
+            leave_tester(control);
+        }
+    }
+}
+
+/* Once more if the connection was lost since. */
+static bool send_line(wh_live_control_t *control, const char *line) {
+    const size_t size = strlen(line);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        wh_live_control_drain(control);
+        if (!connect_tester(control)) {
+            return false;
+        }
+        if (send(control->fd, line, size, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)size) {
+            return true;
+        }
+        leave_tester(control);
+    }
+    return false;
+}
+
+/* Hands { id, line } or { id, rate } on; the answer comes as a frame with this id. */
+static unsigned ask_tester(wh_live_control_t *control, const char *key, json_t *value, char **answer) {
+    json_t *request = json_object();
+    char line[MOST_LINE + 200];
+    wh_json_put(request, "id", json_integer((json_int_t)++control->requests));
+    wh_json_put(request, key, json_incref(value));
+    char *text = json_dumps(request, JSON_COMPACT);
+    json_decref(request);
+    const int length = snprintf(line, sizeof line, "%s\n", text ? text : "");
+    free(text);
+    if (length < 2 || (size_t)length >= sizeof line || !send_line(control, line)) {
+        *answer = wh_text_copy("{\"ok\":false,\"text\":\"the tester's port does not answer\"}");
+        return UNAVAILABLE;
+    }
+    char told[64];
+    (void)snprintf(told, sizeof told, "{\"ok\":true,\"id\":%llu}", (unsigned long long)control->requests);
+    *answer = wh_text_copy(told);
+    return ACCEPTED;
+}
+
+/* ----------------------------------------------------------------------------------------------- requests */
+
+/* Takes as long for any token. */
+static bool is_token(const wh_live_control_t *control, const json_t *given) {
+    char text[WH_LIVE_TOKEN + 1] = "";
+    unsigned differs = 0;
+    if (json_is_string(given)) {
+        (void)snprintf(text, sizeof text, "%s", json_string_value(given));
+        differs |= json_string_length(given) != WH_LIVE_TOKEN ? 1U : 0U;
+    }
+    for (size_t i = 0; i < WH_LIVE_TOKEN; ++i) {
+        differs |= (unsigned char)text[i] ^ (unsigned char)control->token[i];
+    }
+    return differs == 0;
+}
+
+static unsigned refuse(unsigned status, const char *text, char **answer) {
+    char *made = wh_array_new(strlen(text) + 40, 1);
+    (void)snprintf(made, strlen(text) + 40, "{\"ok\":false,\"text\":\"%s\"}", text);
+    *answer = made;
+    return status;
+}
+
+static unsigned done(char **answer) {
+    *answer = wh_text_copy("{\"ok\":true}");
+    return OK;
+}
+
+static unsigned set_rate(wh_live_control_t *control, json_t *given, char **answer) {
+    const double rate = json_number_value(given);
+    if (!json_is_number(given) || !(rate <= MOST_RATE) || !(rate >= LEAST_RATE || rate == 0)) {
+        return refuse(BAD, "rate: expected a number from 0.001 to 1000, or 0", answer);
+    }
+    if (control->controlled == WH_LIVE_TESTER) {
+        return ask_tester(control, "rate", given, answer);
+    }
+    __atomic_store_n(&control->rate_ppm, (int64_t)(rate * 1e6), __ATOMIC_RELAXED);
+    return done(answer);
+}
+
+static unsigned take_line(wh_live_control_t *control, json_t *given, char **answer) {
+    const char *line = json_string_value(given);
+    if (control->controlled != WH_LIVE_TESTER) {
+        return refuse(BAD, "line: a script commands this run (expected serve --page-control)", answer);
+    }
+    if (!line || json_string_length(given) > MOST_LINE || line[strcspn(line, "\r\n")] != '\0') {
+        return refuse(BAD, "line: expected one line of at most 1000 bytes", answer);
+    }
+    return ask_tester(control, "line", given, answer);
+}
+
+/* Pauses, and the ways on from there. */
+static unsigned take_pause(wh_live_control_t *control, const json_t *request, char **answer) {
+    const json_t *pause = json_object_get(request, "pause");
+    const json_t *slices = json_object_get(request, "slices");
+    if (control->controlled != WH_LIVE_RUN) {
+        return refuse(BAD, "pause: hosts wait for their answers (expected run --page-control)", answer);
+    }
+    if (slices) {
+        const json_int_t count = json_integer_value(slices);
+        if (!json_is_integer(slices) || count < 1 || count > MOST_SLICES) {
+            return refuse(BAD, "slices: expected a whole number from 1 to 1000000", answer);
+        }
+        (void)__atomic_add_fetch(&control->slices, count, __ATOMIC_ACQ_REL);
+        return done(answer);
+    }
+    if (pause && !json_is_boolean(pause)) {
+        return refuse(BAD, "pause: expected true or false", answer);
+    }
+    const bool is_command = json_is_true(json_object_get(request, "command"));
+    __atomic_store_n(&control->ends_at_command, is_command, __ATOMIC_RELEASE);
+    __atomic_store_n(&control->slices, 0, __ATOMIC_RELEASE);
+    __atomic_store_n(&control->is_paused, !is_command && json_is_true(pause), __ATOMIC_RELEASE);
+    return done(answer);
+}
+
+static unsigned take(wh_live_control_t *control, const json_t *request, char **answer) {
+    json_t *rate = json_object_get(request, "rate");
+    json_t *line = json_object_get(request, "line");
+    if (!is_token(control, json_object_get(request, "token"))) {
+        return refuse(FORBIDDEN, "the token is wrong (expected the one that the program has printed)",
+                      answer);
+    }
+    if (json_object_size(request) != 2) {
+        return refuse(BAD, "expected token and one of pause, slices, command, rate, line", answer);
+    }
+    if (rate || line) {
+        return rate ? set_rate(control, rate, answer) : take_line(control, line, answer);
+    }
+    const bool is_known = json_object_get(request, "pause") || json_object_get(request, "slices") ||
+                          json_object_get(request, "command");
+    return is_known ? take_pause(control, request, answer)
+                    : refuse(BAD, "expected token and one of pause, slices, command, rate, line", answer);
+}
+
+unsigned wh_live_control_take(wh_live_control_t *control, const char *body, size_t size, char **answer) {
+    json_error_t error;
+    json_t *request = json_loadb(body, size, JSON_REJECT_DUPLICATES, &error);
+    const unsigned status = json_is_object(request) ? take(control, request, answer)
+                                                    : refuse(BAD, "expected a JSON object", answer);
+    json_decref(request);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------ opening */
+
+bool wh_live_control_begin(wh_live_control_t *control, wh_live_controlled_t controlled, double rate) {
+    unsigned char bytes[WH_LIVE_TOKEN / 2];
+    control->controlled = controlled;
+    control->rate_ppm = (int64_t)(rate * 1e6);
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) {
+        return false;
+    }
+    for (size_t i = 0; i < sizeof bytes; ++i) {
+        (void)snprintf(control->token + 2 * i, 3, "%02x", bytes[i]);
+    }
+    /* Other testers number their requests from 1 on. */
+    control->requests = 1000000000U + 1000U * (unsigned)(bytes[0] << 8 | bytes[1]);
+    return true;
+}
+
+void wh_live_control_end(wh_live_control_t *control) {
+    leave_tester(control);
+}

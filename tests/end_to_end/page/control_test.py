@@ -1,0 +1,171 @@
+"""--page-control: the token, what a run and a served cell take, and that a session plays again to the same hash."""
+import json
+import os
+import re
+import socket
+import statistics
+import subprocess
+import time
+import unittest
+
+import page
+
+TRANSFER = "lua/examples/01_transfer.lua"
+HASH = "e4e148111c08e2e0"
+
+
+class Control(unittest.TestCase):
+    def serve(self, *arguments):
+        served = page.Served(*arguments)
+        self.addCleanup(served.kill)
+        line = next(line for line in served.lines if "page at" in line)
+        self.token = re.search(r"/#token=([0-9a-f]{32})\n", line)[1]
+        return served
+
+    def ask(self, served, request, **headers):
+        """(status, answer)"""
+        told = {"Content_Type": "application/json", **headers}
+        status, _, text = served.ask("/control", method="POST", body=json.dumps(request).encode(), **told)
+        return status, text
+
+    def tell(self, served, **request):
+        status, text = self.ask(served, dict(request, token=self.token))
+        self.assertIn(status, (200, 202), text)
+        return json.loads(text)
+
+    def now(self, served):
+        return served.document()["document"]["duration_s"]
+
+    def test_run_is_held_up_and_stays_the_same(self):
+        """Paused, a slice, a command, another pace; its hash is that of the run alone."""
+        served = self.serve("run", TRANSFER, "--page", "0", "--page-control")
+        served.document()
+        self.tell(served, pause=True)
+        time.sleep(0.2)
+        stands = self.now(served)
+        time.sleep(0.3)
+        self.assertEqual(self.now(served), stands)
+        self.assertTrue(served.document()["state"]["paused"])
+        for count in (1, 1, 5):
+            self.tell(served, slices=count)
+            time.sleep(0.3)
+            stands = round(stands + count / 1000, 3)
+            self.assertEqual(self.now(served), stands)
+        self.tell(served, command=True)
+        for _ in range(200):
+            time.sleep(0.05)
+            got = served.document()
+            if got["state"]["paused"]:
+                break
+        commands = got["document"]["run"]["commands"]
+        self.assertEqual(got["document"]["duration_s"], max(each["end_s"] for each in commands if each["end_s"]))
+        self.tell(served, rate=50)
+        self.tell(served, pause=False)
+        served.said("its page stays until Ctrl-C")
+        self.assertEqual(served.document()["state"]["rate"], 50)
+        status, out = served.end()
+        self.assertEqual(status, 0)
+        self.assertIn(HASH, out)
+
+    def test_served_cell_plays_again(self):
+        """A fault from the page, between a host's commands: the transcript has it, and plays again to the same hash."""
+        transcript = page.ROOT / "build/live_page_session.txt"
+        transcript.unlink(missing_ok=True)
+        served = self.serve("serve", "lua/layouts/paper.lua", "--dialect", "lua/dialects/prompt.lua", "--tcp", "127.0.0.1:0",
+                            "--lockstep", "--page", "0", "--page-control", "--transcript", transcript)
+        served.said("cell, ")
+        place = next(found[1] for found in (re.search(r"prompt.*, at ([0-9.:]+)", line) for line in served.lines) if found)
+        host, port = place.split(":")
+        line = socket.create_connection((host, int(port)), 20)
+        answers = line.makefile("r")
+
+        def command(text, begin):
+            line.sendall((text + "\r\n").encode())
+            self.assertTrue(answers.readline().startswith(begin), text)
+
+        command("GET A 1", "OK")
+        number = self.tell(served, line="ALARM 42")["id"]
+        for _ in range(200):
+            frames = served.document()["document"]["run"]["frames"]
+            told = [each["text"] for each in frames if each["port"].startswith("control") and each["kind"] == "<"]
+            if told:
+                break
+            time.sleep(0.02)
+        self.assertTrue(told, frames)
+        self.assertIn(f'"id":{number},', told[0].replace("\\", ""))
+        self.assertIn("OK fault=", told[0])
+        command("PUT B 2", "OK")
+        command("GET B 1", "ERROR 42")
+        self.tell(served, rate=5)
+        line.close()
+        time.sleep(0.3)
+        status, _ = served.end()
+        self.assertEqual(status, 0)
+        said = "".join(served.lines)
+        self.assertIn("ALARM 42", transcript.read_text())
+        played = subprocess.run([page.PROGRAM, "converse", transcript], cwd=page.ROOT, capture_output=True, text=True, check=False)
+        self.assertEqual(played.returncode, 0, played.stdout + played.stderr)
+        hashes = re.findall(r"hash ([0-9a-f]{16})", said + played.stdout + played.stderr)
+        self.assertEqual(len(set(hashes)), 1, hashes)
+        self.assertGreaterEqual(len(hashes), 1)
+
+    def test_token(self):
+        """Nobody else's, nothing like it, and no time that tells how much of it is right."""
+        served = self.serve("run", "lua/examples/12_three_foups.lua", "--page", "0", "--page-control")
+        served.document()
+        right = self.token
+        for token in ("", right[:-1], right + "0", right[:-1] + ("0" if right[-1] != "0" else "1"), right.upper() + "x", None, 7, [right],
+                      right + "\u0000", "\u0000" + right, "x" * 3000):
+            status, text = self.ask(served, {"token": token, "pause": True})
+            self.assertIn(status, (400, 403), (token, text))
+        self.assertEqual(self.ask(served, {"pause": True})[0], 403)
+        self.assertFalse(served.document()["state"]["paused"])
+        times = {}
+        for name, token in (("first", "z" + right[1:]), ("last", right[:-1] + "z")):
+            times[name] = []
+            for _ in range(60):
+                begun = time.perf_counter()
+                self.ask(served, {"token": token, "pause": True})
+                times[name].append(time.perf_counter() - begun)
+        print(f"\na wrong first digit {1e6 * statistics.median(times['first']):.0f} us, a wrong last one "
+              f"{1e6 * statistics.median(times['last']):.0f} us")
+        self.assertNotIn(right, "".join(served.ask(path)[2] for path in ("/", "/page.js", "/document")))
+        again = page.Served("run", TRANSFER, "--page", "0", "--page-control")
+        self.addCleanup(again.kill)
+        self.assertNotIn(right, "".join(again.lines))
+
+    def test_wrong_requests(self):
+        served = self.serve("run", "lua/examples/12_three_foups.lua", "--page", "0", "--page-control")
+        served.document()
+        for request in ({}, {"pause": 1}, {"slices": 0}, {"slices": 1.5}, {"slices": 10**7}, {"slices": "1"}, {"rate": -1},
+                        {"rate": 1e9}, {"rate": "1"}, {"rate": 1e-9}, {"line": "STATUS"}, {"nothing": 1},
+                        {"pause": True, "rate": 1}):
+            status, text = self.ask(served, dict(request, token=self.token))
+            self.assertEqual((status, json.loads(text)["ok"]), (400, False), request)
+        for body in (b"", b"[]", b"{", b'{"token":', b"\xff", b"[" * 3000, b'{"token":1,"token":2}'):
+            status, _, text = served.ask("/control", method="POST", body=body, Content_Type="application/json")
+            self.assertEqual((status, json.loads(text)["ok"]), (400, False), body)
+        status, _, _ = served.ask("/control", method="POST", body=b"{}" + b" " * 5000, Content_Type="application/json")
+        self.assertEqual(status, 413)
+        good = {"token": self.token, "pause": True}
+        self.assertEqual(self.ask(served, good, Content_Type="text/plain")[0], 415)
+        self.assertEqual(self.ask(served, good, Origin="http://evil.example")[0], 403)
+        self.assertEqual(self.ask(served, good, Host="evil.example")[0], 403)
+        self.assertEqual(served.ask("/control", token=self.token)[0], 404)
+        self.assertFalse(served.document()["state"]["paused"])
+
+    def test_refusals(self):
+        for arguments, message in (
+                (("run", TRANSFER, "--page-control"), "--page-control goes with --page"),
+                (("sim", "lua/layouts/paper.lua", "--page", "0", "--page-control"), "--page-control: motion control commands this cell"),
+                (("mcs", TRANSFER, "--page", "0", "--page-control"), "--page-control: the simulator is another process"),
+        ):
+            if arguments[0] != "run" and os.environ.get("WH_NETWORK") == "none":
+                continue
+            ran = subprocess.run([page.PROGRAM, *arguments], cwd=page.ROOT, capture_output=True, text=True, timeout=30, check=False)
+            self.assertEqual(ran.returncode, 2, arguments)
+            self.assertIn(message, ran.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
