@@ -145,7 +145,8 @@ static int step_flow(lua_State *L) {
     }
     const int64_t slice_us = played->outside.slice_us;
     const int64_t us = next_us - now_us < LOOK_US ? next_us - now_us : LOOK_US;
-    lua_pushnumber(L, (double)((us + slice_us - 1) / slice_us * slice_us) / 1e6);
+    const int64_t slices = (us + slice_us - 1) / slice_us;
+    lua_pushnumber(L, (double)(slices * slice_us) / 1e6);
     return 1;
 }
 
@@ -368,12 +369,13 @@ static int end_work(lua_State *L) {
 
 /* ------------------------------------------------------------------------------------------------- ending */
 
-/* native.end_flow(good): all robots stand. Returns the figures; with false they are dropped, and nothing is
- * returned. Raises the error of a function of the flow. */
+/* native.end_flow(problem): all robots stand. Returns the figures, or raises the error of a function of
+ * the flow. With a problem, an error's text, they are dropped, nothing is returned, and the run fails,
+ * whoever catches that error. */
 static int end_flow(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_flow_played_t *played = mcs->lanes->flow;
-    const bool is_good = lua_toboolean(L, 1) && played->engine->is_over;
+    const bool is_good = lua_isnoneornil(L, 1) && played->engine->is_over;
     mcs->lanes->flow = NULL;
     for (size_t s = 0; s < played->tool->station_count; ++s) {
         wh_mcs_set_down(mcs, (int32_t)s, false);
@@ -382,6 +384,7 @@ static int end_flow(lua_State *L) {
     drop(played, is_good);
     if (!is_good) {
         wh_flow_figures_close(&played->flow->figures);
+        wh_flow_fail_word(mcs, luaL_optstring(L, 1, "the flow did not come to its end"));
         return 0;
     }
     return wh_flow_return_word(L, mcs, has_failed);

@@ -144,17 +144,25 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     push_all_shares(L, figures);
 }
 
-/* Wafers are not at their ends: why, however long that is. */
-static void judge_end(wh_record_t *record, const wh_flow_t *flow, const char *error) {
-    const wh_flow_result_t *result = &flow->figures.result;
+/* Wafers are not at their ends: why, however long these texts are. */
+static void fail(wh_record_t *record, const char *word, const char *why, const char *error) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = wh_memory_need(open_memstream(&text, &size));
-    fprintf(out, "every wafer at its end; %s%s%s%s", result->end == WH_FLOW_STUCK ? "STUCK: " : "",
-            result->why ? result->why : "", error ? ": " : "", error ? error : "");
+    fprintf(out, "every wafer at its end; %s%s%s%s", word, why ? why : "", error ? ": " : "",
+            error ? error : "");
     (void)fclose(out);
-    wh_record_add_expectation(record, flow->line, text, false);
+    wh_record_add_expectation(record, record->flow->line, text, false);
     free(text);
+}
+
+static void judge_end(wh_record_t *record, const wh_flow_t *flow, const char *error) {
+    const wh_flow_result_t *result = &flow->figures.result;
+    fail(record, result->end == WH_FLOW_STUCK ? "STUCK: " : "", result->why, error);
+}
+
+void wh_flow_fail_word(const wh_mcs_t *mcs, const char *why) {
+    fail(mcs->recorder.record, "", why, NULL);
 }
 
 /* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was

@@ -12,4 +12,7 @@ wh_flow_t *wh_flow_read_word(lua_State *L, wh_mcs_t *mcs, const wh_flow_tool_t *
  * stack if a function of the script `has_failed`. */
 int wh_flow_return_word(lua_State *L, wh_mcs_t *mcs, bool has_failed);
 
+/* The run fails: the flow did not come to its end, for this reason. */
+void wh_flow_fail_word(const wh_mcs_t *mcs, const char *why);
+
 #endif

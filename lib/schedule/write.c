@@ -168,6 +168,7 @@ static void add_doings(lines_t *lines) {
                 add_line(lines, opens ? WH_SCHEDULE_OPEN : WH_SCHEDULE_CLOSE, doing->begin_us, doing->end_us);
             line->robot = doing->robot;
             line->station = doing->station;
+            line->side = figures->tool->sides[wh_flow_of(figures->tool, doing->robot, doing->station)];
         }
     }
 }

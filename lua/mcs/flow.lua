@@ -2,7 +2,7 @@
 -- cell with axes the engine decides, and each robot is a task that plays its commands; see lib/mcs/flow_played.h.
 
 -- Local copies: a script may set globals of these names.
-local error, ipairs, math, pcall, rawget, type = error, ipairs, math, pcall, rawget, type
+local error, ipairs, math, pcall, rawget, tostring, type = error, ipairs, math, pcall, rawget, tostring, type
 
 return function(native, tasks, commands, lookup)
   local flows = {}
@@ -224,9 +224,9 @@ return function(native, tasks, commands, lookup)
     local good, problem = pcall(tasks.beside, begin_tasks(robots, stations, line))
     under_way = 0
     if good then
-      return native.end_flow(true)
+      return native.end_flow()
     end
-    native.end_flow(false)
+    native.end_flow(type(problem) == "table" and type(problem.text) == "string" and problem.text or tostring(problem))
     error(problem, 0)
   end
 
