@@ -11,6 +11,7 @@ static const wh_reader_field_t framing_fields[] = {{"start", "string", "", false
                                                    {"ends", "table", "", true},
                                                    {"sum", "string", "", false},
                                                    {"separator", "string", "", false},
+                                                   {"escape", "string", "", false},
                                                    {"sums_start", "boolean", "", false},
                                                    {"sums_separator", "boolean", "", false},
                                                    {"skips_empty", "boolean", "", false},
@@ -68,7 +69,7 @@ static void validate_framing(const wh_reader_t *reader, const wh_framing_t *fram
 }
 
 void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
-    static const char *const sums[] = {"none", "add", "xor", "complement", NULL};
+    static const char *const sums[] = {"none", "add", "xor", "complement", "crc16", NULL};
     wh_framing_t *framing = &dialect->framing;
     if (!wh_reader_open(reader, "framing", framing_fields)) {
         wh_reader_fail(reader, "framing", "a table");
@@ -79,6 +80,12 @@ void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
     framing->end_count = read_marks(reader, "ends", framing->ends);
     framing->sum = (wh_sum_kind_t)wh_reader_choice(reader, "sum", WH_SUM_NONE, sums);
     framing->separator = read_mark(reader, "separator");
+    const wh_framing_mark_t escape = read_mark(reader, "escape");
+    if (escape.size > 1) {
+        wh_reader_fail(reader, "escape", "one byte");
+    }
+    framing->has_escape = escape.size == 1;
+    framing->escape = escape.bytes[0];
     framing->sums_start = wh_reader_boolean(reader, "sums_start", false);
     framing->sums_separator = wh_reader_boolean(reader, "sums_separator", false);
     framing->skips_empty = wh_reader_boolean(reader, "skips_empty", true);

@@ -64,35 +64,58 @@ static void settle_line(wh_framer_t *framer) {
     }
 }
 
-/* Judges the bytes behind a body of `size` bytes: they should be its sum. */
-static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *body, size_t size) {
+/* Judges the bytes behind a body, which should be its sum; `plain` is the body without its escapes. */
+static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *sum, const uint8_t *plain,
+                                 size_t size) {
     const wh_framing_t *framing = &framer->framing;
-    const uint8_t *sum = body + size;
-    const unsigned high = wh_framing_digit(sum[framing->separator.size]);
-    const unsigned low = wh_framing_digit(sum[framing->separator.size + 1]);
-    const bool is_good = memcmp(sum, framing->separator.bytes, framing->separator.size) == 0 && high < 16 &&
-                         low < 16 && 16 * high + low == wh_framing_sum(framing, framer->start, body, size);
-    return is_good ? WH_FRAME_GOOD : WH_FRAME_BAD_SUM;
+    bool is_good = memcmp(sum, framing->separator.bytes, framing->separator.size) == 0;
+    unsigned told = 0;
+    for (size_t i = 0; i < wh_framing_digits(framing); ++i) {
+        const unsigned digit = wh_framing_digit(sum[framing->separator.size + i]);
+        is_good = is_good && digit < 16;
+        told = 16 * told + digit;
+    }
+    return is_good && told == wh_framing_sum(framing, framer->start, plain, size) ? WH_FRAME_GOOD
+                                                                                  : WH_FRAME_BAD_SUM;
+}
+
+/* Finds a body without its escapes. Returns its size. */
+static size_t find_plain(wh_framer_t *framer, const uint8_t *body, size_t size, const uint8_t **plain) {
+    size_t count = 0;
+    *plain = body;
+    if (!framer->framing.has_escape) {
+        return size;
+    }
+    for (size_t i = 0; i < size; ++i) {
+        i += body[i] == framer->framing.escape && i + 1 < size ? 1 : 0;
+        framer->plain[count++] = body[i];
+    }
+    *plain = framer->plain;
+    return count;
 }
 
 /* The line has come to an end of `end_size` bytes. */
 static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
     const size_t from = start_size(framer);
-    const size_t around = framing->sum != WH_SUM_NONE ? framing->separator.size + 2 : 0;
+    const size_t digits = wh_framing_digits(framing);
+    const size_t around = digits > 0 ? framing->separator.size + digits : 0;
     const size_t content = framer->size - from - end_size;
+    const size_t room = content < around ? 0 : content - around;
+    const uint8_t *plain = NULL;
+    const size_t size = find_plain(framer, framer->line + from, room, &plain);
     wh_frame_kind_t kind = WH_FRAME_GOOD;
     if (is_garbage(framer)) {
         kind = WH_FRAME_GARBAGE;
-    } else if (content < around || content - around < framing->shortest) {
+    } else if (content < around || size < framing->shortest) {
         kind = WH_FRAME_SHORT;
     } else if (around > 0) {
-        kind = judge_sum(framer, framer->line + from, content - around);
+        kind = judge_sum(framer, framer->line + from + room, plain, size);
     }
     tell_frame(framer, kind, framer->size, 0, framing->start_count, frame);
     if (kind == WH_FRAME_GOOD) {
-        frame->body = framer->line + from;
-        frame->body_size = content - around;
+        frame->body = plain;
+        frame->body_size = size;
     }
 }
 
@@ -170,6 +193,13 @@ static void tell_overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     }
 }
 
+/* True if a byte may be a mark's last one: it is, and no escape stands before it. */
+static bool may_be_mark(wh_framer_t *framer, uint8_t byte) {
+    const bool is_plain = framer->is_escaped;
+    framer->is_escaped = framer->framing.has_escape && !is_plain && byte == framer->framing.escape;
+    return !is_plain && framer->may_mark[byte];
+}
+
 /* Adds a byte to the line. */
 static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
@@ -182,7 +212,7 @@ static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
     framer->line[framer->size++] = byte;
     size_t start = framing->start_count;
     size_t end = framing->end_count;
-    if (framer->may_mark[byte]) {
+    if (may_be_mark(framer, byte)) {
         start = mark_at_end(framer, framing->starts, framing->start_count, start_size(framer));
         end = mark_at_end(framer, framing->ends, framing->end_count, start_size(framer));
     }
@@ -206,6 +236,7 @@ static bool is_late(const wh_framer_t *framer, int64_t time_us) {
 
 /* Gives up the line that was begun, if there is one. */
 static void give_up_line(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
+    framer->is_escaped = false;
     if (framer->dropped > 0) {
         end_drop(framer, 0, framer->framing.start_count);
     } else if (framer->size > 0) {

@@ -31,6 +31,13 @@ unsigned wh_framing_digit(uint8_t byte) {
     return found ? (unsigned)(found - digits) % 16U : 16U;
 }
 
+size_t wh_framing_digits(const wh_framing_t *framing) {
+    if (framing->sum == WH_SUM_NONE) {
+        return 0;
+    }
+    return framing->sum == WH_SUM_CRC16 ? 4 : 2;
+}
+
 /* A byte that may stand in one of several places alone. */
 static bool shares_byte(const wh_framing_mark_t *a, const wh_framing_mark_t *b) {
     for (size_t i = 0; i < a->size; ++i) {
@@ -144,6 +151,35 @@ static bool check_separator(const wh_framing_t *framing, char *problem) {
     return true;
 }
 
+static bool are_single(const wh_framing_mark_t *marks, size_t count) {
+    size_t i = 0;
+    while (i < count && marks[i].size == 1) {
+        ++i;
+    }
+    return i == count;
+}
+
+static bool check_escape(const wh_framing_t *framing, char *problem) {
+    const wh_framing_mark_t escape = {{framing->escape}, 1};
+    if (!framing->has_escape) {
+        return true;
+    }
+    if (!are_single(framing->starts, framing->start_count) ||
+        !are_single(framing->ends, framing->end_count)) {
+        (void)snprintf(problem, WH_FRAMING_PROBLEM_BYTES, "escape: expected starts and ends of one byte");
+        return false;
+    }
+    const bool is_mark = shares_any(&escape, framing->starts, framing->start_count) ||
+                         shares_any(&escape, framing->ends, framing->end_count) ||
+                         shares_byte(&escape, &framing->separator);
+    if (is_mark || (framing->sum != WH_SUM_NONE && has_digit(&escape))) {
+        (void)snprintf(problem, WH_FRAMING_PROBLEM_BYTES,
+                       "escape: expected no start, end or separator, and no hex digit beside a sum");
+        return false;
+    }
+    return true;
+}
+
 /* Bytes of a frame without its body, at the most. */
 static size_t most_around(const wh_framing_t *framing) {
     size_t start = 0;
@@ -154,7 +190,7 @@ static size_t most_around(const wh_framing_t *framing) {
     for (size_t i = 0; i < framing->end_count; ++i) {
         end = framing->ends[i].size > end ? framing->ends[i].size : end;
     }
-    return start + framing->separator.size + (framing->sum != WH_SUM_NONE ? 2 : 0) + end;
+    return start + framing->separator.size + wh_framing_digits(framing) + end;
 }
 
 static bool check_numbers(const wh_framing_t *framing, char *problem) {
@@ -164,7 +200,7 @@ static bool check_numbers(const wh_framing_t *framing, char *problem) {
     } numbers[] = {
         {"starts", (long long)framing->start_count, 0, WH_FRAMING_MARKS},
         {"ends", (long long)framing->end_count, 1, WH_FRAMING_MARKS},
-        {"sum", (long long)framing->sum, 0, WH_SUM_COMPLEMENT},
+        {"sum", (long long)framing->sum, 0, WH_SUM_CRC16},
         {"longest", (long long)framing->longest, WH_FRAMING_LEAST, WH_FRAMING_LINE},
         {"timeout", framing->timeout_us, 0, WH_FRAMING_TIMEOUT_US},
     };
@@ -182,7 +218,7 @@ bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PR
         !check_marks(framing, framing->starts, framing->start_count, "start", problem) ||
         !check_marks(framing, framing->ends, framing->end_count, "end", problem) ||
         !check_starts(framing, problem) || !check_ends(framing, problem) ||
-        !check_separator(framing, problem)) {
+        !check_separator(framing, problem) || !check_escape(framing, problem)) {
         return false;
     }
     const size_t room = framing->longest - most_around(framing);
@@ -192,15 +228,27 @@ bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PR
 
 /* ----------------------------------------------------------------------------------------------- the sum */
 
+static unsigned add_to_crc(unsigned crc, uint8_t byte) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) {
+        crc = (crc & 1U) != 0 ? crc >> 1 ^ 0xA001U : crc >> 1;
+    }
+    return crc;
+}
+
 static unsigned sum_bytes(wh_sum_kind_t kind, unsigned sum, const uint8_t *bytes, size_t size) {
     for (size_t i = 0; i < size; ++i) {
-        sum = kind == WH_SUM_XOR ? sum ^ bytes[i] : sum + bytes[i];
+        if (kind == WH_SUM_CRC16) {
+            sum = add_to_crc(sum, bytes[i]);
+        } else {
+            sum = kind == WH_SUM_XOR ? sum ^ bytes[i] : sum + bytes[i];
+        }
     }
     return sum;
 }
 
-uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size) {
-    unsigned sum = 0;
+uint16_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size) {
+    unsigned sum = framing->sum == WH_SUM_CRC16 ? 0xFFFFU : 0;
     if (framing->sums_start && start < framing->start_count) {
         sum = sum_bytes(framing->sum, sum, framing->starts[start].bytes, framing->starts[start].size);
     }
@@ -208,7 +256,10 @@ uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t 
     if (framing->sums_separator) {
         sum = sum_bytes(framing->sum, sum, framing->separator.bytes, framing->separator.size);
     }
-    return (uint8_t)((framing->sum == WH_SUM_COMPLEMENT ? 0U - sum : sum) & 0xFFU);
+    if (framing->sum == WH_SUM_CRC16) {
+        return (uint16_t)sum;
+    }
+    return (uint16_t)((framing->sum == WH_SUM_COMPLEMENT ? 0U - sum : sum) & 0xFFU);
 }
 
 /* ----------------------------------------------------------------------------------------------- writing */
@@ -216,6 +267,24 @@ uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t 
 static size_t append_bytes(uint8_t *to, size_t at, const void *bytes, size_t size) {
     memcpy(to + at, bytes, size);
     return at + size;
+}
+
+static bool is_mark(const wh_framing_t *framing, uint8_t byte) {
+    const wh_framing_mark_t one = {{byte}, 1};
+    return byte == framing->escape || shares_any(&one, framing->starts, framing->start_count) ||
+           shares_any(&one, framing->ends, framing->end_count);
+}
+
+/* Appends a body with its escapes, as far as a line has room. */
+static size_t append_body(const wh_framing_t *framing, uint8_t *to, size_t at, const uint8_t *body,
+                          size_t size) {
+    for (size_t i = 0; i < size && at + 2 <= WH_FRAMING_LINE; ++i) {
+        if (framing->has_escape && is_mark(framing, body[i])) {
+            to[at++] = framing->escape;
+        }
+        to[at++] = body[i];
+    }
+    return at;
 }
 
 /* True if a framer reads this body back from the frame, and nothing else. */
@@ -245,12 +314,13 @@ size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_
     if (framing->start_count > 0) {
         length = append_bytes(bytes, length, framing->starts[start].bytes, framing->starts[start].size);
     }
-    length = append_bytes(bytes, length, body, size);
+    length = append_body(framing, bytes, length, body, size);
     if (framing->sum != WH_SUM_NONE) {
-        char digits[3];
-        (void)snprintf(digits, sizeof digits, "%02X", wh_framing_sum(framing, start, body, size));
+        char digits[8];
+        const size_t count = wh_framing_digits(framing);
+        (void)snprintf(digits, sizeof digits, "%0*X", (int)count, wh_framing_sum(framing, start, body, size));
         length = append_bytes(bytes, length, framing->separator.bytes, framing->separator.size);
-        length = append_bytes(bytes, length, digits, 2);
+        length = append_bytes(bytes, length, digits, count);
     }
     length = append_bytes(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
     if (length > framing->longest || !reads_back(framing, bytes, length, body, size)) {

@@ -33,14 +33,15 @@ typedef struct {
     size_t size;
 } wh_framing_mark_t;
 
-/* The check sum of the bytes that count, as two hex digits. Its names in a dialect: none, add, xor,
- * complement.
+/* The check sum of the bytes that count, as two hex digits, or four of a CRC. Its names in a dialect: none,
+ * add, xor (a longitudinal redundancy check), complement (the other one of that name), crc16.
  */
 typedef enum {
     WH_SUM_NONE,
-    WH_SUM_ADD,       /* the bytes added up, modulo 256 */
-    WH_SUM_XOR,       /* the bytes, exclusive or */
-    WH_SUM_COMPLEMENT /* the difference to the next multiple of 256 */
+    WH_SUM_ADD,        /* the bytes added up, modulo 256 */
+    WH_SUM_XOR,        /* the bytes, exclusive or */
+    WH_SUM_COMPLEMENT, /* the difference to the next multiple of 256 */
+    WH_SUM_CRC16       /* x^16 + x^15 + x^2 + 1, bits from the lowest on, begun with FFFF */
 } wh_sum_kind_t;
 
 /* How one direction of a line is framed. The body counts into the sum; the fields below say what else does.
@@ -57,7 +58,9 @@ typedef struct {
     bool sums_start;             /* the start counts into the sum */
     bool sums_separator;         /* the separator does */
     bool skips_empty;            /* an end alone is no frame: blank lines */
-    size_t shortest;             /* the fewest bytes of a body */
+    bool has_escape;    /* a byte of the body that is a start, an end or `escape` has that before it; */
+    uint8_t escape;     /* then all marks are of one byte; sums count bytes without escapes */
+    size_t shortest;    /* the fewest bytes of a body */
     size_t longest;     /* the most bytes of a frame, all told: WH_FRAMING_LEAST to WH_FRAMING_LINE */
     int64_t timeout_us; /* the time after a byte at which a frame without an end is given up; 0: never */
 } wh_framing_t;
@@ -70,13 +73,13 @@ wh_framing_t wh_framing_default(void);
  * sum, none is a hex digit. */
 bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PROBLEM_BYTES]);
 
-/* The two digits' value over what counts of a frame: the start's bytes, the body and the separator. */
-uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size);
+/* The digits' value over what counts of a frame: the start's bytes, the body and the separator. */
+uint16_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size);
 
 /* Writes a whole frame with start number `start` (ignored if there are none) around a body. Returns its size.
  * 0, and nothing is written, if there is no such start, the frame would be longer than `longest`, the body is
- * shorter than `shortest`, or a framer would not read this body back: it holds a start or an end, or is empty
- * and `skips_empty`. Cost: linear in size, about 20 ns a byte. */
+ * shorter than `shortest`, or a framer would not read this body back: it holds a start or an end without
+ * `has_escape`, or is empty and `skips_empty`. Cost: linear in size, about 20 ns a byte. */
 size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
                          uint8_t frame[WH_FRAMING_LINE]);
 
@@ -89,7 +92,7 @@ typedef enum {
     WH_FRAME_NO_END,   /* a start, or the line's end, came before the frame's end */
     WH_FRAME_TIMEOUT,  /* nothing came for `timeout_us` before the frame's end */
     WH_FRAME_SHORT,    /* the body, or what should be the sum, has too few bytes */
-    WH_FRAME_BAD_SUM,  /* the sum is wrong, or is not two hex digits */
+    WH_FRAME_BAD_SUM,  /* the sum is wrong, or is not as many hex digits */
     WH_FRAME_GARBAGE,  /* bytes without a start, up to an end, a start, a time-out, or too many of them */
     WH_FRAME_KINDS     /* how many there are */
 } wh_frame_kind_t;
@@ -107,7 +110,7 @@ typedef struct {
                            * `longest` */
     size_t size;
     bool is_over; /* too long, or garbage of that length: the byte that was too many stands behind them */
-    const uint8_t *body; /* of a good frame, without start, separator, sum and end; else as `bytes` */
+    const uint8_t *body; /* of a good frame, without start, escapes, sum and end; else as `bytes` */
     size_t body_size;
     size_t start; /* of frames with a start, which one; else 0 */
 } wh_frame_t;
@@ -126,11 +129,13 @@ typedef struct {
     wh_framing_t framing;
     bool may_mark[256]; /* a start or an end has this byte as its last one */
     uint8_t line[WH_FRAMING_LINE + 1];
-    size_t size;      /* bytes in line */
-    size_t start;     /* the start that it begins with; start_count: none */
-    bool told;        /* the line was told of: with the next call it leaves, */
-    size_t keeps;     /* but without this number of last bytes, */
-    size_t next;      /* which are this start */
+    uint8_t plain[WH_FRAMING_LINE]; /* a body without its escapes */
+    bool is_escaped;                /* the last byte is an escape: the next one is no mark */
+    size_t size;                    /* bytes in line */
+    size_t start;                   /* the start that it begins with; start_count: none */
+    bool told;                      /* the line was told of: with the next call it leaves, */
+    size_t keeps;                   /* but without this number of last bytes, */
+    size_t next;                    /* which are this start */
     size_t dropped;   /* bytes behind a frame that was too long; `line` then has only the last bytes */
     int passes;       /* a byte that is passed over if it comes next; -1: none */
     int64_t first_us; /* of the line */

@@ -126,7 +126,8 @@ void wh_controller_greet(wh_controller_t *controller) {
     }
     const wh_reply_t reply = {dialect->text, dialect->text_size, dialect->text_start};
     if (reply.text && !send_body(controller, &reply, false)) {
-        say_mistake(controller, "connected: its text is no body of a frame");
+        wh_dialect_note(dialect, "connected: its text is no body of a frame");
+        say_mistake(controller, dialect->message);
     }
 }
 

@@ -123,10 +123,18 @@ local function object(...)
   return "{" .. table.concat(list, ",") .. "}"
 end
 
+-- The longest answer, bytes: a frame has 4,096.
+local LONGEST = 4000
+
 local function told(request, result)
   local error = not result.ok
-  return object("id", request.id, "ok", result.ok, "answer", result.ok and (result.reply or result.answer) or nil,
+  local text = object("id", request.id, "ok", result.ok, "answer", result.ok and (result.reply or result.answer) or nil,
     "number", error and result.number or nil, "name", error and result.name or nil, "text", error and result.answer or nil)
+  if #text > LONGEST then
+    return object("id", request.id, "ok", false, "number", 48, "name", "BAD_ARGUMENT",
+      "text", ("an answer of %d bytes (expected one for less, at most %d)"):format(#text, LONGEST))
+  end
+  return text
 end
 
 -- ------------------------------------------------------------------------------------------------------------ requests
@@ -149,8 +157,8 @@ local function decode(frame, client)
         fail(("%s (one of line, rate, subscribe, tell)"):format(name))
       end
       what = name
-    elseif type(value) == "table" then
-      fail("id: a table")
+    elseif type(value) ~= "number" and (type(value) ~= "string" or #value > 64) then
+      fail("id: no number, and no text of at most 64 bytes")
     end
   end
   if what == "line" then
@@ -210,7 +218,7 @@ return {
     complete = told,
     refuse = function(request, failure)
       local detail = failure.detail ~= "" and "; " .. failure.detail or ""
-      return object("id", request.id, "ok", false, "number", failure.number, "name", failure.name, "text", failure.text .. detail)
+      return object("id", request.id, "ok", false, "number", failure.number, "name", failure.name, "text", (failure.text .. detail):sub(1, 500))
     end,
     bad = function(reason) return object("ok", false, "number", 48, "name", "BAD_ARGUMENT", "text", "no line: " .. reason) end,
     event = function(event)

@@ -16,7 +16,7 @@ local power, attached, estop = false, false, false
 local payload, monitor, selected = 0, 100, 1
 local shown = {}       -- joints whose encoders tell something else than they stand at: { value, mended by homing }
 local free = {}        -- joints that can be moved by hand
-local profiles, locations, signals, parameters = {}, {}, {}, {}
+local profiles, locations, signals, parameters, parameter_count = {}, {}, {}, {}, 0
 local width, open_width, close_width = 125, 125, 85
 local grasp = { 85, 50, 10 }
 local base = { 0, 0, 0, 0 }
@@ -94,9 +94,17 @@ local function elbow_of(now)
   return (now.position.forearm or 1) < 0 and 2 or 1
 end
 
+-- The first blade by its name.
+local function hand_name(now)
+  local first
+  for name in pairs(now.poses) do
+    first = (not first or name < first) and name or first
+  end
+  return first or "hand"
+end
+
 local function hand(now)
-  local pose = now.poses[host.arm("hand")] or select(2, next(now.poses)) or { x = 0, y = 0, z = 0, yaw = 0 }
-  return pose
+  return now.poses[hand_name(now)] or { x = 0, y = 0, z = 0, yaw = 0 }
 end
 
 local function where_c(now)
@@ -300,7 +308,7 @@ local commands = {
     end
   end),
   sig = ask(function(words)
-    local which = whole(words[1])
+    local which = whole(words[1], 1, 999)
     if words[2] then
       signals[which] = whole(words[2])
       return ""
@@ -310,7 +318,12 @@ local commands = {
   pd = ask(function(words) return parameters[table.concat(words, " ")] or "0" end),
   pc = ask(function(words)
     local set = table.remove(words)
-    parameters[table.concat(words, " ")] = set
+    local name = table.concat(words, " ")
+    parameter_count = parameter_count + (parameters[name] == nil and 1 or 0)
+    if parameter_count > 500 then
+      fail(-706, "Value too large: more than 500 parameters")
+    end
+    parameters[name] = set
     return ""
   end),
   reset = ask(function() attached = false return "" end),
@@ -462,7 +475,7 @@ local commands = {
     values[which] = number(words[2])
     if which == 5 then
       width = values[5]
-      return "MOVE z=" .. ("%.9f"):format(now.position.z)
+      return "MOVE z=" .. ("%.9f"):format(now.position.z or 0)
     end
     return line_of_joints(values, profile(words[3] or "1"))
   end),
@@ -502,11 +515,11 @@ local commands = {
     return "HOME"
   end },
   movetosafe = { does = "HOME", run = function(request) check_motion(request) return "HOME" end },
-  gripper = { does = "VALVE", run = function(request)
+  gripper = { does = "VALVE", run = function(request, now)
     check_power(request)
     local which = whole(request.words[1], 1, 2)
     width = which == 1 and open_width or close_width
-    return ("VALVE %s %d"):format(host.arm("hand"), which == 1 and 1 or 0)
+    return ("VALVE %s %d"):format(hand_name(now), which == 1 and 1 or 0)
   end },
   pickplate = { does = "GET", run = transfer("GET"), answer = function() width = grasp[1] return "-1" end },
   placeplate = { does = "PUT", run = transfer("PUT"), answer = function() width = open_width end },

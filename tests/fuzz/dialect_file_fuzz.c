@@ -57,6 +57,9 @@ static void check_message(void) {
 }
 
 /* A reply that is no frame is a mistake as well; it is detected before anything is sent. */
+static const wh_client_t client = {"motion", 1};
+static const wh_pose_t poses[WH_GRIPPERS];
+
 static void check_text(void) {
     uint8_t frame[WH_FRAMING_LINE];
     for (size_t at = 0; dialect.text && at <= dialect.text_size;) {
@@ -89,7 +92,8 @@ static void answer(const wh_request_t *request, size_t size) {
                           .seconds = 1.965,
                           .layout = layout,
                           .mechanism = &cell,
-                          .sensors = 1};
+                          .sensors = 1,
+                          .poses = poses};
     const wh_told_t told = {.request = request, .result = &result};
     const wh_failure_t failure = {.number = number, .detail = "so it is"};
     const wh_told_t refusal = {.request = request, .failure = &failure};
@@ -103,10 +107,16 @@ static void answer(const wh_request_t *request, size_t size) {
     tell(WH_ENCODE_REFUSE, &refusal);
 }
 
+static void see_now(void *user, wh_result_t *now) {
+    (void)user;
+    *now = (wh_result_t){
+        .answer = "", .status = status, .layout = layout, .mechanism = &cell, .sensors = 1, .poses = poses};
+}
+
 static void run(const wh_request_t *request, size_t size) {
     static wh_lines_t lines;
     wh_failure_t failure;
-    const wh_decoded_t outcome = wh_dialect_run(&dialect, request, &lines, &failure);
+    const wh_decoded_t outcome = wh_dialect_run(&dialect, request, see_now, NULL, &lines, &failure);
     REQUIRE(lines.count <= WH_DIALECT_LINES);
     if (outcome == WH_DECODED_MISTAKE) {
         check_message();
@@ -119,7 +129,8 @@ static void run(const wh_request_t *request, size_t size) {
 static void take(const uint8_t *body, size_t size) {
     wh_request_t request;
     wh_failure_t failure;
-    const wh_decoded_t outcome = wh_dialect_decode(&dialect, (const char *)body, size, &request, &failure);
+    const wh_decoded_t outcome =
+        wh_dialect_decode(&dialect, &client, (const char *)body, size, &request, &failure);
     if (outcome == WH_DECODED_MISTAKE) {
         check_message();
     } else if (outcome == WH_DECODED_REQUEST) {
@@ -139,10 +150,33 @@ static void take_frames(const uint8_t *data, size_t size) {
 }
 
 static void tell_of_events(void) {
-    const wh_host_event_t event = {"slot_occupied", true, "Wafer 1", "EE", 1.158};
+    const wh_host_event_t event = {.kind = "slot_occupied",
+                                   .is_complaint = true,
+                                   .wafer = "Wafer 1",
+                                   .gripper = "EE",
+                                   .seconds = 1.158,
+                                   .value = 1,
+                                   .client = client};
     tell(WH_ENCODE_EVENT, &(wh_told_t){.event = &event});
     tell(WH_ENCODE_BAD, &(wh_told_t){.reason = "bad sum"});
     tell(WH_ENCODE_UNACKNOWLEDGED, &(wh_told_t){.reason = NULL});
+}
+
+/* A client comes and goes, and a tester says something. */
+static void call_hooks(void) {
+    wh_failure_t failure;
+    bool stops = false;
+    if (wh_dialect_welcome(&dialect, &client)) {
+        check_text();
+    } else {
+        check_message();
+    }
+    if (wh_dialect_tell(&dialect, "estop on", &stops, &failure) == WH_DECODED_MISTAKE) {
+        check_message();
+    }
+    if (!wh_dialect_part(&dialect, &client)) {
+        check_message();
+    }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -156,6 +190,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     } else {
         take_frames(data + length + 1, end ? size - length - 1 : 0);
         tell_of_events();
+        call_hooks();
     }
     wh_dialect_close(&dialect);
     return 0;

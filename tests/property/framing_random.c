@@ -47,7 +47,7 @@ static wh_framing_t draw_framing(void) {
     framing.start_count = wh_test_below(3);
     framing.starts[0] = (wh_framing_mark_t){"$", 1};
     framing.starts[1] = (wh_framing_mark_t){"!", 1};
-    framing.sum = (wh_sum_kind_t)wh_test_below(4);
+    framing.sum = (wh_sum_kind_t)wh_test_below(5);
     if (framing.sum != WH_SUM_NONE) {
         framing.sums_start = wh_test_below(2) == 0;
         framing.sums_separator = wh_test_below(2) == 0;
@@ -103,16 +103,23 @@ static bool is_start(const wh_framing_t *framing, uint8_t byte) {
 static bool is_sum(const wh_framing_t *framing, const uint8_t *body, size_t size, bool is_second) {
     const char *sum = (const char *)body + size;
     const bool is_separated = framing->separator.size == 0 || sum[0] == ',';
-    char digits[3];
-    (void)snprintf(digits, sizeof digits, "%.2s", sum + framing->separator.size);
-    return is_separated && strspn(digits, "0123456789abcdefABCDEF") == 2 &&
+    const size_t wanted = framing->sum == WH_SUM_CRC16 ? 4 : 2;
+    char digits[5];
+    (void)snprintf(digits, sizeof digits, "%.*s", (int)wanted, sum + framing->separator.size);
+    return is_separated && strspn(digits, "0123456789abcdefABCDEF") == wanted &&
            strtoul(digits, NULL, 16) == wh_framing_sum(framing, is_second ? 1 : 0, body, size);
+}
+
+/* The bytes behind a body: its sum. */
+static size_t around_body(const wh_framing_t *framing) {
+    const size_t digits = framing->sum == WH_SUM_CRC16 ? 4 : 2;
+    return framing->sum == WH_SUM_NONE ? 0 : digits + framing->separator.size;
 }
 
 /* The bytes from `from` to before `to`; the last of them is the end. */
 static void tell_ended(const wh_framing_t *framing, size_t from, size_t to, told_t *told) {
     const size_t start = framing->start_count > 0 ? 1 : 0;
-    const size_t around = framing->sum != WH_SUM_NONE ? 2 + framing->separator.size : 0;
+    const size_t around = around_body(framing);
     const uint8_t *bytes = line + from;
     const size_t size = to - from;
     const size_t body = size - start - 1 - around;
@@ -250,6 +257,33 @@ static void same_in_pieces(void **state) {
     assert_int_equal(kinds, (1 << WH_FRAME_KINDS) - (1 << WH_FRAME_GOOD));
 }
 
+/* Marks of any length; where all are of one byte, perhaps with an escape. */
+static void draw_marks(wh_framing_t *framing) {
+    framing->start_count = wh_test_below(3);
+    framing->starts[0] = (wh_framing_mark_t){"#$", 2};
+    framing->starts[1] = (wh_framing_mark_t){"$", 1};
+    framing->ends[0] = (wh_framing_mark_t){"\x03\r\n;", 1 + wh_test_below(4)};
+    framing->end_count = 1;
+    framing->sum = (wh_sum_kind_t)wh_test_below(5);
+    framing->has_escape = framing->start_count < 2 && framing->ends[0].size == 1 && wh_test_below(2) == 0;
+    framing->escape = 0x10;
+    if (framing->has_escape) {
+        framing->starts[0] = (wh_framing_mark_t){"\x02", 1};
+    }
+}
+
+static size_t draw_body(const wh_framing_t *framing, uint8_t body[WH_FRAMING_LINE]) {
+    static const uint8_t marks[] = {0x02, 0x03, 0x10};
+    const size_t size = wh_test_below(wh_test_below(4) == 0 ? WH_FRAMING_LINE : 30);
+    for (size_t i = 0; i < size; ++i) {
+        body[i] = wh_test_below(10) == 0 ? (uint8_t)wh_test_below(256) : 'x';
+        if (framing->has_escape && wh_test_below(5) == 0) {
+            body[i] = marks[wh_test_below(3)];
+        }
+    }
+    return size;
+}
+
 /* Marks of any length: an encoded body is read back, also behind any other frame, however it is cut. */
 static void encoded_comes_back(void **state) {
     (void)state;
@@ -260,16 +294,8 @@ static void encoded_comes_back(void **state) {
         uint8_t body[WH_FRAMING_LINE];
         uint8_t frame[WH_FRAMING_LINE];
         wh_frame_t found = {.kind = WH_FRAME_NONE};
-        framing.start_count = wh_test_below(3);
-        framing.starts[0] = (wh_framing_mark_t){"#$", 2};
-        framing.starts[1] = (wh_framing_mark_t){"$", 1};
-        framing.ends[0] = (wh_framing_mark_t){"\x03\r\n;", 1 + wh_test_below(4)};
-        framing.end_count = 1;
-        framing.sum = (wh_sum_kind_t)wh_test_below(4);
-        const size_t size = wh_test_below(wh_test_below(4) == 0 ? WH_FRAMING_LINE : 30);
-        for (size_t i = 0; i < size; ++i) {
-            body[i] = wh_test_below(10) == 0 ? (uint8_t)wh_test_below(256) : 'x';
-        }
+        draw_marks(&framing);
+        const size_t size = draw_body(&framing, body);
         const size_t start = framing.start_count > 0 ? wh_test_below((uint32_t)framing.start_count) : 0;
         const size_t whole = wh_framing_encode(&framing, start, body, size, frame);
         assert_true(wh_framer_init(&framer, &framing));

@@ -75,6 +75,65 @@ static void sums(void **state) {
     assert_int_equal(wh_framing_sum(&framing, 0, (const uint8_t *)"1,I", 3), 0x31 ^ 0x49 ^ 0x24);
 }
 
+/* 123456789 has the CRC 4B37, as tables of checks have it. */
+static void a_crc(void **state) {
+    (void)state;
+    wh_framing_t framing = dollar();
+    uint8_t frame[WH_FRAMING_LINE];
+    framing.sum = WH_SUM_CRC16;
+    framing.sums_separator = false;
+    assert_int_equal(wh_framing_sum(&framing, 0, (const uint8_t *)"123456789", 9), 0x4B37);
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"123456789", 9, frame), 16);
+    assert_memory_equal(frame, "$123456789,4B37\r", 16);
+    begin(&framing);
+    feed("$123456789,4b37\r$123456789,4B38\r$123456789,37\r$12,4B3\r$1,\r", 0);
+    assert_string_equal(heard,
+                        "good:123456789;bad sum:$123456789,4B38\r;bad sum:$123456789,37\r;short:$12,4B3\r;"
+                        "short:$1,\r;");
+}
+
+/* STX, ETX and DLE: any byte may be in a body. */
+static void escapes(void **state) {
+    (void)state;
+    wh_framing_t framing = wh_framing_default();
+    uint8_t frame[WH_FRAMING_LINE];
+    framing.starts[0] = (wh_framing_mark_t){"\x02", 1};
+    framing.start_count = 1;
+    framing.ends[0] = (wh_framing_mark_t){"\x03", 1};
+    framing.end_count = 1;
+    framing.has_escape = true;
+    framing.escape = 0x10;
+    framing.sum = WH_SUM_XOR;
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"a\x03\x10\x02", 4, frame), 11);
+    assert_memory_equal(frame,
+                        "\x02"
+                        "a\x10\x03\x10\x10\x10\x02"
+                        "70\x03",
+                        11);
+    begin(&framing);
+    feed("\x02"
+         "a\x10\x03\x10\x10\x10\x02"
+         "70\x03"
+         "\x02"
+         "b62\x03"
+         "\x02"
+         "c\x10\x03"
+         "\x02"
+         "d64\x03",
+         0);
+    assert_string_equal(heard, "good:a\x03\x10\x02;good:b;no end:\x02"
+                               "c\x10\x03;good:d;");
+    char problem[WH_FRAMING_PROBLEM_BYTES];
+    framing.escape = 3;
+    assert_false(wh_framing_validate(&framing, problem));
+    assert_string_equal(problem,
+                        "escape: expected no start, end or separator, and no hex digit beside a sum");
+    framing.escape = 0x10;
+    framing.ends[0] = (wh_framing_mark_t){"\r\n", 2};
+    assert_false(wh_framing_validate(&framing, problem));
+    assert_string_equal(problem, "escape: expected starts and ends of one byte");
+}
+
 static void lost_bytes(void **state) {
     (void)state;
     const wh_framing_t framing = dollar();
@@ -210,7 +269,7 @@ static void descriptions(void **state) {
     assert_true(wh_framing_validate(&framing, problem));
     REFUSE(start_count, 5, "starts: 5 (expected 0 to 4)");
     REFUSE(end_count, 0, "ends: 0 (expected 1 to 4)");
-    REFUSE(sum, (wh_sum_kind_t)4, "sum: 4 (expected 0 to 3)");
+    REFUSE(sum, (wh_sum_kind_t)5, "sum: 5 (expected 0 to 4)");
     REFUSE(longest, 4097, "longest: 4097 (expected 32 to 4096)");
     REFUSE(longest, 31, "longest: 31 (expected 32 to 4096)");
     REFUSE(shortest, 59, "shortest: 59 (expected 0 to 58)");
@@ -235,9 +294,9 @@ static void descriptions(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines),        cmocka_unit_test(sums),     cmocka_unit_test(lost_bytes),
-        cmocka_unit_test(pauses),       cmocka_unit_test(too_long), cmocka_unit_test(writing),
-        cmocka_unit_test(descriptions),
+        cmocka_unit_test(lines),    cmocka_unit_test(sums),       cmocka_unit_test(a_crc),
+        cmocka_unit_test(escapes),  cmocka_unit_test(lost_bytes), cmocka_unit_test(pauses),
+        cmocka_unit_test(too_long), cmocka_unit_test(writing),    cmocka_unit_test(descriptions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
