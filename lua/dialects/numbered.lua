@@ -15,6 +15,7 @@ local TURNED = 0x1000 -- of a configuration: the wrist within half a turn
 local power, attached, estop = false, false, false
 local payload, monitor, selected = 0, 100, 1
 local shown = {}       -- joints whose encoders tell something else than they stand at: { value, mended by homing }
+local cut_short = false -- something was stopped or has failed: the arm comes out of a nest before it picks or places
 local free = {}        -- joints that can be moved by hand
 local profiles, locations, signals, parameters, parameter_count = {}, {}, {}, {}, 0
 local width, open_width, close_width = 125, 125, 85
@@ -233,7 +234,12 @@ local function transfer(word)
     if not nest or nest.distance > NEAR then
       fail(-1040, ("Position too far: no nest within %d mm of the location"):format(NEAR))
     end
-    return ("%s %s %d"):format(word, nest.station, nest.slot)
+    local line = ("%s %s %d"):format(word, nest.station, nest.slot)
+    if cut_short then
+      cut_short = false
+      return { "RECOVER", line }
+    end
+    return line
   end
 end
 
@@ -521,8 +527,8 @@ local commands = {
     width = which == 1 and open_width or close_width
     return ("VALVE %s %d"):format(hand_name(now), which == 1 and 1 or 0)
   end },
-  pickplate = { does = "GET", run = transfer("GET"), answer = function() width = grasp[1] return "-1" end },
-  placeplate = { does = "PUT", run = transfer("PUT"), answer = function() width = open_width end },
+  pickplate = { does = "RECOVER GET", run = transfer("GET"), answer = function() width = grasp[1] return "-1" end },
+  placeplate = { does = "RECOVER PUT", run = transfer("PUT"), answer = function() width = open_width end },
 }
 commands.homeall = { does = "HOME", run = function(request)
   if not power then
@@ -560,6 +566,7 @@ local function decode(frame, client)
   elseif name == "hp" and words[1] and whole(words[1], 0, 1) == 0 then
     power, name = false, "hp 0"
   end
+  cut_short = cut_short or name == "halt" or name == "hp 0"
   return { command = name, words = words, port = client.port }
 end
 
@@ -573,6 +580,7 @@ local function told(request, result)
     end
     return text == "" and "0" or "0 " .. text
   end
+  cut_short = cut_short or request.command == "pickplate" or request.command == "placeplate"
   -- The gripper has closed on nothing: a pick that is told to have found no plate.
   if request.command == "pickplate" and (result.name == "WAFER_MISSING" or result.name == "VACUUM_TIMEOUT" or result.name == "VACUUM_BEFORE_PICK") then
     return "0 0"
@@ -585,6 +593,7 @@ local function tester(text)
   local what, joint, at = text:match("^(%a+)%s+(%a+)%s*(%S*)$")
   if what == "estop" and (joint == "on" or joint == "off") then
     estop = joint == "on"
+    cut_short = cut_short or estop
     power = power and not estop
     return estop
   end
