@@ -186,13 +186,16 @@ void wh_flow_own_use(lua_State *L, const wh_flow_plan_t *plan) {
     own->L = L;
 }
 
-bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state) {
+bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state,
+                               int64_t (*now)(const void *), const void *clock) {
     own_t *own = plan->own_context;
     if (!plan->on_problem) {
         return false;
     }
     own->seen.asked = state;
     own->seen.state = state;
+    own->seen.now = now;
+    own->seen.clock = clock;
     own->seen.robot = WH_FLOW_NONE;
     wh_flow_seen_push_value(L, &own->seen, ON_ERROR);
     wh_flow_seen_push(L, &own->seen);
@@ -202,6 +205,7 @@ bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const w
 void wh_flow_own_end_on_error(const wh_flow_plan_t *plan) {
     own_t *own = plan->own_context;
     own->seen.asked = own->seen.state = NULL;
+    own->seen.now = NULL;
 }
 
 bool wh_flow_own_close(lua_State *L, wh_flow_plan_t *plan) {

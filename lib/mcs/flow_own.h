@@ -16,7 +16,8 @@ void wh_flow_own_use(lua_State *L, const wh_flow_plan_t *plan);
 
 /* Pushes on_error and the tool, which can be read until wh_flow_own_end_on_error; false and nothing: there is
  * none. So the caller can call it where commands may wait. */
-bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state);
+bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state,
+                               int64_t (*now)(const void *), const void *clock);
 void wh_flow_own_end_on_error(const wh_flow_plan_t *plan);
 
 /* The flow is over: what the functions kept of the tool tells nothing any more. Pushes the error that

@@ -281,11 +281,15 @@ static int end_action(lua_State *L) {
     return 0;
 }
 
+static int64_t now_of(const void *played) {
+    return wh_flow_played_now(played);
+}
+
 /* native.begin_on_error(): the function on_error and the tool, which it can read until native.end_on_error();
  * nothing: there is none. */
 static int begin_on_error(lua_State *L) {
     const wh_flow_played_t *played = played_of(L);
-    return wh_flow_own_push_on_error(L, &played->flow->plan, &played->engine->state) ? 2 : 0;
+    return wh_flow_own_push_on_error(L, &played->flow->plan, &played->engine->state, now_of, played) ? 2 : 0;
 }
 
 /* native.end_on_error(): it has answered. */

@@ -259,7 +259,7 @@ static bool push_robot_field(lua_State *L, wh_flow_seen_t *seen, int32_t number,
 static bool push_tool_field(lua_State *L, wh_flow_seen_t *seen, int32_t none, const char *key) {
     (void)none;
     if (is(key, "now")) {
-        push_us(L, seen->state->now_us);
+        push_us(L, seen->now ? seen->now(seen->clock) : seen->state->now_us);
     } else if (is(key, "robot")) {
         lua_pushstring(L, seen->robot == WH_FLOW_NONE ? NULL : seen->tool->robots[seen->robot].name);
     } else if (is(key, "choices")) {

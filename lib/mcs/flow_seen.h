@@ -24,6 +24,9 @@ typedef struct {
     const wh_flow_state_t *state; /* null but while a function is called */
     const wh_flow_state_t *asked; /* the same while a function may wait, else null */
     int32_t robot;                /* that is asked, or WH_FLOW_NONE */
+    int64_t (*now)(
+        const void *); /* the time, of `clock`; null: the state's, which is that of its last event */
+    const void *clock;
     size_t count;
     wh_flow_choice_t choices[WH_FLOW_SEEN_CHOICES];
 } wh_flow_seen_t;

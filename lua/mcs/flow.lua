@@ -6,6 +6,8 @@ local error, ipairs, math, pcall, rawget, tostring, type = error, ipairs, math, 
 
 return function(native, tasks, commands, lookup)
   local flows = {}
+  -- A handler that always answers "retry" comes to an end.
+  local most_retries = 100
 
   -------------------------------------------------------------------------------------------------- commands
 
@@ -38,7 +40,11 @@ return function(native, tasks, commands, lookup)
   end
 
   function play.swap(action)
-    commands.swap(action.station, action.slot, { robot = action.robot })
+    if action.has_taken then
+      commands.put(action.station, action.slot, { gripper = action.gripper })
+    else
+      commands.swap(action.station, action.slot, { robot = action.robot })
+    end
   end
 
   ----------------------------------------------------------------------------------------------------- errors
@@ -58,11 +64,25 @@ return function(native, tasks, commands, lookup)
     return answer
   end
 
+  -- True if another gripper of this one's robot holds a wafer.
+  local function holds_another(gripper)
+    for _, index in ipairs(lookup.on_robot(native.layout.grippers[gripper].robot)) do
+      if index ~= gripper and native.sensor(index) then
+        return true
+      end
+    end
+    return false
+  end
+
   -- True if the command that failed has done its work after all, as the gripper's sensor has it.
   local function is_done(action)
     local gripper = action.gripper and lookup.gripper(action.gripper)
     if action.what == "pick" then
       return native.sensor(gripper)
+    end
+    if action.what == "swap" then
+      action.has_taken = holds_another(gripper)
+      return action.has_taken and not native.sensor(gripper)
     end
     return action.what == "place" and not action.is_placed and not native.sensor(gripper)
   end
@@ -89,6 +109,11 @@ return function(native, tasks, commands, lookup)
         return false
       elseif is_done(action) then
         return true
+      end
+      action.retries = (action.retries or 0) + 1
+      if action.retries > most_retries then
+        native.fail_flow(("%s; retried %d times"):format(cause_of(action, robot, problem), most_retries))
+        return false
       end
     end
   end
