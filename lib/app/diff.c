@@ -4,19 +4,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../log/compare.h"
-#include "../print/record_print.h"
 #include "../text/array.h"
 #include "../text/json.h"
 #include "../text/json_compare.h"
-#include "../text/options.h"
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
-#include "log_arguments.h"
-
-/* The newest of results. */
-#define FORMAT 2
+#include "diff_side.h"
 
 /* The most differences at the end that are told one by one. */
 #define MOST_TOLD 20
@@ -54,11 +48,6 @@ static const wh_command_line_t command_line = {
     .operand = "file",
     .operand_variable = offsetof(arguments_t, paths),
     .operands = 2};
-
-/* The fields that do not belong to the run itself: how long it took, where files lie, which program made
- * it, and what motion control alone knows. */
-static const char *const aside[] = {"wall_s",  "script", "layout", "title",      "reproduce",
-                                    "version", "source", "log",    "never_came", NULL};
 
 /* The first difference, and those at the end. */
 typedef struct {
@@ -114,160 +103,10 @@ static double slice_of(const json_t *root) {
                         : 0;
 }
 
-/* -------------------------------------------------------------------------------------------------- files */
-
-typedef struct {
-    const char *path;
-    const wh_option_list_t *parameters;
-    bool is_log;
-    json_t *root;
-    wh_log_run_t *run; /* null: JSON */
-    wh_log_digests_t digests;
-} side_t;
-
-/* There must be something to compare besides the format's number and the fields that are left aside. */
-static bool is_result(json_t *root) {
-    size_t members = json_object_size(root);
-    for (size_t i = 0; aside[i]; ++i) {
-        members -= json_object_get(root, aside[i]) ? 1 : 0;
-    }
-    return json_is_integer(json_object_get(root, "format")) && members > 1;
-}
-
-/* The scene of --data is called by the script's path. */
-static void leave_path(json_t *root) {
-    json_t *scene = json_object_get(root, "scene");
-    (void)json_object_del(json_array_get(json_object_get(scene, "scenes"), 0), "name");
-}
-
-/* True for the verdict on a log that has the whole of what it tells. */
-static bool is_whole(const char *verdict) {
-    return strcmp(verdict, wh_reading_word(WH_READING_SAME)) == 0 ||
-           strcmp(verdict, wh_reading_word(WH_READING_DIFFERS)) == 0;
-}
-
-/* Where a result tells what its log is worth: in the record, in the run of a page's data, or, of `replay`,
- * beside all else. */
-static const json_t *find_log(const json_t *root) {
-    const json_t *run = json_object_get(root, "run");
-    const json_t *log = json_object_get(json_is_object(run) ? run : root, "log");
-    return json_is_object(log) || json_is_object(run) ? log : root;
-}
-
-/* A result may be that of a log: one that lacks something is never equal to another. */
-static bool is_of_whole_log(const side_t *side) {
-    const json_t *log = find_log(side->root);
-    const char *verdict = json_string_value(json_object_get(log, "verdict"));
-    const char *reason = json_string_value(json_object_get(log, "reason"));
-    if (verdict && !is_whole(verdict)) {
-        fprintf(stderr, "%s: %s: %s (expected the result of a whole log)\n", side->path, verdict,
-                reason ? reason : "no reason");
-    } else if (json_is_true(json_object_get(log, "is_part"))) {
-        fprintf(stderr, "%s: of a part of a recording (expected the result of a whole recording)\n",
-                side->path);
-        return false;
-    }
-    return !verdict || is_whole(verdict);
-}
-
-static bool read_json(side_t *side, FILE *file) {
-    json_error_t error;
-    side->root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
-    if (!side->root) {
-        fprintf(stderr, "%s: line %d: %s (expected an LCM event log, or what --json or --data made)\n",
-                side->path, error.line, error.text);
-    } else if (!is_result(side->root)) {
-        fprintf(stderr, "%s: no result of ours (expected what --json or --data made)\n", side->path);
-    }
-    leave_path(side->root);
-    const json_int_t format = json_integer_value(json_object_get(side->root, "format"));
-    if (side->root && is_result(side->root) && (format < 1 || format > FORMAT)) {
-        fprintf(stderr, "%s: format: %lld (expected 1 to %d)\n", side->path, (long long)format, FORMAT);
-        return false;
-    }
-    return side->root && is_result(side->root) && is_of_whole_log(side);
-}
-
-static bool open_side(side_t *side) {
-    static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
-    unsigned char begin[8];
-    const char *fault = NULL;
-    FILE *file = wh_log_file(side->path, &fault);
-    if (!file) {
-        fprintf(stderr, "%s: %s (expected an LCM event log, or what --json or --data made)\n", side->path,
-                fault);
-        return false;
-    }
-    const size_t size = fread(begin, 1, sizeof begin, file);
-    side->is_log =
-        wh_log_is_packed(begin, size) || (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
-    rewind(file);
-    if (size == 0) {
-        fprintf(stderr, "%s: empty (expected an LCM event log, or what --json or --data made)\n", side->path);
-    }
-    const bool read = size > 0 && (side->is_log || read_json(side, file));
-    (void)fclose(file);
-    return read;
-}
-
-static void close_run(side_t *side) {
-    wh_log_digests_free(&side->digests);
-    if (side->run) {
-        wh_log_run_close(side->run);
-        free(side->run);
-    }
-    side->run = NULL;
-}
-
-/* With `count` of the given parameters. */
-static bool read_run(side_t *side, size_t number, size_t count) {
-    wh_log_run_options_t wanted = {
-        .path = side->path, .number = number, .layout = {NULL, side->parameters->items, count}};
-    side->run = wh_array_new(1, sizeof *side->run);
-    return wh_compare_read(side->run, &wanted, &side->digests);
-}
-
-/* Both logs may be of one layout's file with other parameters. */
-static bool read_with_layout(side_t *side, size_t number) {
-    const size_t count = side->parameters->count;
-    bool read = read_run(side, number, count);
-    if (read && count > 0 && !side->run->cell.is_whole) {
-        close_run(side);
-        read = read_run(side, number, 0);
-    }
-    return read;
-}
-
-/* A log that lacks something is never equal to another. */
-static bool read_log(side_t *side, size_t number) {
-    if (!read_with_layout(side, number)) {
-        fprintf(stderr, "%s\n", side->run->message);
-        return false;
-    }
-    const char *verdict = side->run->worth.verdict;
-    if (!is_whole(verdict)) {
-        fprintf(stderr, "%s: %s: %s (expected a whole log)\n", side->path, verdict, side->run->worth.reason);
-        return false;
-    }
-    if (side->run->worth.is_part) {
-        fprintf(stderr, "%s: part %d of a recording: %s not read (expected a whole recording)\n", side->path,
-                (int)side->run->worth.part, wh_log_missing_parts(side->run));
-        return false;
-    }
-    side->root = wh_record_to_json(&side->run->record);
-    return true;
-}
-
-static void close_side(side_t *side) {
-    json_decref(side->root);
-    close_run(side);
-    side->root = NULL;
-}
-
 /* ------------------------------------------------------------------------------------------------ compare */
 
 /* The reach of the axes is rehearsed when a script is played: for a log it is not known. */
-static void leave_reach(const side_t sides[2]) {
+static void leave_reach(const wh_diff_side_t sides[2]) {
     const size_t counts[2] = {json_array_size(json_object_get(sides[0].root, "reach")),
                               json_array_size(json_object_get(sides[1].root, "reach"))};
     if ((counts[0] == 0) != (counts[1] == 0)) {
@@ -277,9 +116,9 @@ static void leave_reach(const side_t sides[2]) {
     }
 }
 
-static void compare_documents(const side_t sides[2], result_t *result) {
+static void compare_documents(const wh_diff_side_t sides[2], result_t *result) {
     leave_reach(sides);
-    wh_json_compare(sides[0].root, sides[1].root, aside, on_difference, result);
+    wh_json_compare(sides[0].root, sides[1].root, wh_diff_aside, on_difference, result);
     const double slice_s = slice_of(sides[0].root);
     if (!isnan(result->time_s) && result->slice == 0 && slice_s > 0) {
         result->slice = (int64_t)floor(result->time_s / slice_s + 0.5);
@@ -288,7 +127,7 @@ static void compare_documents(const side_t sides[2], result_t *result) {
 
 /* Runs of two layouts may be equal, slice by slice, so a difference of the layouts is told first. If a
  * layout's file is missing, its shapes and limits are not known. */
-static void compare_layouts(const side_t sides[2], result_t *result) {
+static void compare_layouts(const wh_diff_side_t sides[2], result_t *result) {
     const wh_told_layout_t *a = &sides[0].run->cell;
     const wh_told_layout_t *b = &sides[1].run->cell;
     for (size_t i = 0; i < 2; ++i) {
@@ -311,12 +150,12 @@ static void compare_layouts(const side_t sides[2], result_t *result) {
 }
 
 /* Names and number of a slice's fields go by the layout: without that of one log they are no longer alike. */
-static bool have_like_fields(const side_t sides[2]) {
+static bool have_like_fields(const wh_diff_side_t sides[2]) {
     const bool whole[2] = {sides[0].run->cell.is_whole, sides[1].run->cell.is_whole};
     const bool are_alike =
         whole[0] == whole[1] || wh_compare_fields_fit(sides[0].run->cell.layout, sides[1].run->cell.layout);
     if (!are_alike) {
-        const side_t *lacks = &sides[whole[0] ? 1 : 0];
+        const wh_diff_side_t *lacks = &sides[whole[0] ? 1 : 0];
         fprintf(stderr, "%s: %s; %s has its layout (expected that of both: --set hands them parameters)\n",
                 lacks->path, lacks->run->cell.note, sides[whole[0] ? 0 : 1].path);
     }
@@ -324,7 +163,7 @@ static bool have_like_fields(const side_t sides[2]) {
 }
 
 /* True if one of the logs' layouts has read each parameter that is given. */
-static bool are_read(const side_t sides[2]) {
+static bool are_read(const wh_diff_side_t sides[2]) {
     const wh_option_list_t *given = sides[0].parameters;
     for (size_t i = 0; i < given->count; ++i) {
         bool is_read = false;
@@ -344,9 +183,9 @@ static bool are_read(const side_t sides[2]) {
 }
 
 /* One run of each; nothing of an earlier run may differ. */
-static bool compare_run(side_t sides[2], size_t number, result_t *result) {
+static bool compare_run(wh_diff_side_t sides[2], size_t number, result_t *result) {
     wh_compare_t found;
-    if (!read_log(&sides[0], number) || !read_log(&sides[1], number) || !are_read(sides)) {
+    if (!wh_diff_side_read(&sides[0], number) || !wh_diff_side_read(&sides[1], number) || !are_read(sides)) {
         return false;
     }
     wh_log_run_t *const runs[2] = {sides[0].run, sides[1].run};
@@ -390,7 +229,7 @@ static void compare_counts(const size_t counts[2], size_t compared, result_t *re
     }
 }
 
-static bool compare_logs(side_t sides[2], result_t *result) {
+static bool compare_logs(wh_diff_side_t sides[2], result_t *result) {
     size_t number = 1;
     size_t counts[2] = {0, 0};
     bool read = false;
@@ -400,8 +239,8 @@ static bool compare_logs(side_t sides[2], result_t *result) {
             counts[0] = sides[0].run->run_count;
             counts[1] = sides[1].run->run_count;
         }
-        close_side(&sides[0]);
-        close_side(&sides[1]);
+        wh_diff_side_close(&sides[0]);
+        wh_diff_side_close(&sides[1]);
         ++number;
     } while (read && is_same(result) && number <= counts[0] && number <= counts[1]);
     if (read) {
@@ -483,24 +322,8 @@ static int print_json(const result_t *result) {
     return status;
 }
 
-/* A file of --data has the record in a member of its own. */
-static bool is_data(const side_t *side) {
-    return json_object_get(side->root, "tracks") != NULL;
-}
-
-static bool are_of_one_kind(const side_t sides[2]) {
-    if (sides[0].is_log != sides[1].is_log) {
-        fprintf(stderr, "%s and %s: one is a log, the other is not (expected two of one kind)\n",
-                sides[0].path, sides[1].path);
-    } else if (is_data(&sides[0]) != is_data(&sides[1])) {
-        fprintf(stderr, "%s and %s: one is of --data, the other is not (expected two of one kind)\n",
-                sides[0].path, sides[1].path);
-    }
-    return sides[0].is_log == sides[1].is_log && is_data(&sides[0]) == is_data(&sides[1]);
-}
-
-static bool compare_sides(side_t sides[2], result_t *result) {
-    if (!open_side(&sides[0]) || !open_side(&sides[1]) || !are_of_one_kind(sides)) {
+static bool compare_sides(wh_diff_side_t sides[2], result_t *result) {
+    if (!wh_diff_side_open(&sides[0]) || !wh_diff_side_open(&sides[1]) || !wh_diff_sides_are_alike(sides)) {
         return false;
     }
     if (sides[0].is_log) {
@@ -527,7 +350,7 @@ static int print(const arguments_t *arguments, const result_t *result) {
     return is_same(result) ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
-static int diff(const arguments_t *arguments, side_t sides[2]) {
+static int diff(const arguments_t *arguments, wh_diff_side_t sides[2]) {
     result_t result = {.time_s = (double)NAN, .end = json_array()};
     const int status = compare_sides(sides, &result) ? print(arguments, &result) : WH_EXIT_USAGE;
     json_decref(result.end);
@@ -542,13 +365,13 @@ int wh_app_diff(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     int status = WH_EXIT_USAGE;
     if (arguments.paths.count == 2) {
-        side_t sides[2] = {{.path = arguments.paths.items[0], .parameters = &arguments.parameters},
-                           {.path = arguments.paths.items[1], .parameters = &arguments.parameters}};
+        wh_diff_side_t sides[2] = {{.path = arguments.paths.items[0], .parameters = &arguments.parameters},
+                                   {.path = arguments.paths.items[1], .parameters = &arguments.parameters}};
         const wh_named_file_t named[] = {{"the first file", sides[0].path, false},
                                          {"the second file", sides[1].path, false}};
         status = wh_files_are_apart(named, 2, true) ? diff(&arguments, sides) : status;
-        close_side(&sides[0]);
-        close_side(&sides[1]);
+        wh_diff_side_close(&sides[0]);
+        wh_diff_side_close(&sides[1]);
     }
     wh_option_list_free(&arguments.paths);
     wh_option_list_free(&arguments.parameters);

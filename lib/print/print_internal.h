@@ -31,6 +31,7 @@ void wh_print_commands(const wh_printer_t *printer);
 void wh_print_errors(const wh_printer_t *printer);
 void wh_print_handovers(const wh_printer_t *printer);
 void wh_print_stations(const wh_printer_t *printer);
+void wh_print_wafers(const wh_printer_t *printer);
 void wh_print_clearances(const wh_printer_t *printer);
 void wh_print_gantt(const wh_printer_t *printer, const wh_print_window_t *window);
 void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window);
@@ -75,6 +76,9 @@ const char *wh_print_check(const wh_layout_t *layout);
 
 /* How far the wafer's rim is from the gripper's contact plane, mm; the centre's distance hides it. */
 double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event);
+
+/* The angle, in degrees, between wafer and gripper whose cosine is (2). */
+double wh_print_tilt_deg(double n1_proj_n2);
 
 /* A count as people write it: 31,482, in `text`, which is returned; and with the name of the counted things,
  * in the singular or plural. */

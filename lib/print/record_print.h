@@ -126,8 +126,11 @@ json_t *wh_flow_to_json(const wh_flow_t *flow);
 
 /* One element of `events`, of `station_events`, and of `centrings`; the caller releases it. `record` is a
  * wh_record_t. */
-json_t *wh_event_to_json(const wh_record_t *record, size_t i);
+json_t *wh_event_to_json(const void *record, size_t i);
 json_t *wh_station_event_to_json(const void *record, size_t i);
 json_t *wh_centring_to_json(const void *record, size_t i);
+
+/* The names of two parts that touch or come near. */
+json_t *wh_parts_to_json(const wh_record_t *record, const int32_t parts[2]);
 
 #endif

@@ -120,6 +120,16 @@ const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int3
 /* The index of robot and station of a row in the layout's tables; only with a layout, and a robot. */
 size_t wh_check_pair(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
 
+/* ------------------------------------------------------------------------------- before the first instant */
+void wh_check_open(wh_schedule_state_t *check);
+void wh_check_close(wh_schedule_state_t *check);
+
+/* False, with a message, if a row names what the layout does not have. */
+bool wh_check_take_names(wh_schedule_state_t *check);
+
+/* Notes what the rows tell of the whole schedule, and where its doors and wafers are at first. */
+void wh_check_begin(wh_schedule_state_t *check);
+
 /* --------------------------------------------------------------------------- robots: rules 1, 2, 6, 7, 14 */
 void wh_check_robot_begins(wh_schedule_state_t *check, int32_t row);
 void wh_check_length(wh_schedule_state_t *check, int32_t row, int64_t least_us);

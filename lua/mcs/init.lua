@@ -129,7 +129,8 @@ return function(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
     local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states,
       parts.tasks.is_any_alive)
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, parts.keep, background, parts.own)
+    local answers = native.module("mcs/prompt_answers.lua")(native, commands, queries, lookup, tokens, states, parts.keep, background)
+    local prompt_commands = make_commands(native, commands, answers, lookup, tokens, states, background, parts.own)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states, alarms,
       parts.bind, background)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), parts.tasks.serve
@@ -162,5 +163,5 @@ return function(native)
     return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words, wh)()
   end
 
-  return open_prompt, survey, define, parts.tasks.finish
+  return open_prompt, survey, define, parts.finish
 end

@@ -24,6 +24,7 @@ return function(native, wh)
   ------------------------------------------------------------------------------------------- who plans and plays it
 
   local tasks = make("tasks", native, lookup)
+  local task_words, finish = make("task_words", native, lookup, tasks)
   local arm = make("arm", native, lookup, tasks, alarms)
   local ways = make("ways", native, arm, tasks)
   local player = make("player", native, lookup, arm, ways, centring, tasks, alarms)
@@ -56,7 +57,7 @@ return function(native, wh)
 
   local truth = make("truth", native, lookup)
   local mechanisms = make("mechanisms", native, patterns, lookup, arm, player, grips, truth)
-  local align = make("align", native, patterns, lookup, arm, player, mechanisms)
+  local align = make("align", native, patterns, lookup, arm, player, mechanisms, native.module("mcs/scan_reasons.lua"))
   local targets = make("targets", native, lookup, align, mechanisms, stations, grips, planes)
   local ports = make("ports", native, patterns, lookup, arm, player, slot_map)
   local times = make("times", native, patterns, lookup, arm, player, ports)
@@ -77,7 +78,7 @@ return function(native, wh)
     teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map, ports),
   }
   local added = make("added", native, lookup, arm, player, targets, align, centring, slot_map, times, own)
-  for _, words in ipairs({ transfer, singles, tasks.words, added, make("faults", native, lookup, arm, alarms) }) do
+  for _, words in ipairs({ transfer, singles, task_words, added, make("faults", native, lookup, arm, alarms) }) do
     for name, word in pairs(words) do
       commands[name] = word
     end
@@ -90,7 +91,7 @@ return function(native, wh)
   ------------------------------------------------------------------------------------------------------- the whole
 
   local parts = { lookup = lookup, alarms = alarms, targets = targets, tasks = tasks, commands = commands, queries = queries,
-    own = own }
+    own = own, finish = finish }
 
   parts.reach = make("reach", native, tryout, make("flip_room", native, patterns, lookup, player, tryout))
 

@@ -2,18 +2,14 @@
 --
 -- takes     kinds of the arguments in order; the last one may be left out if `optional`, repeated if `repeated`
 -- options   kinds of the options by name; with `needs_option` at least one must be there
--- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
-
+-- run       a function of prompt_answers.lua, in most cases
 -- of_robot  true: a question; at a robot's own port it asks only that robot
 -- asks      true: it has no record, so injected errors are looked for here
 -- keeps     true: it changes nothing that UNDO could take back, or handles UNDO itself
 -- alone     true: not while a task is alive
 
-return function(native, commands, queries, lookup, tokens, states, keep, background, own)
+return function(native, commands, answers, lookup, tokens, states, background, own)
   local prompt_commands = {}
-
-  -- WHERE stops after this many bytes: an answer is one line.
-  local LONGEST_ANSWER = 60000
 
   ------------------------------------------------------------------------------------------------------ kinds
 
@@ -110,306 +106,6 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return options
   end
 
-  ---------------------------------------------------------------------------------------------------- answers
-
-  -- Runs a command and returns how long it took.
-  local function timed(action, ...)
-    local begin = native.utime()
-    action(...)
-    return { "seconds", (native.utime() - begin) / 1e6 }
-  end
-
-  local function held_wafers()
-    local held = {}
-    for index in ipairs(native.layout.grippers) do
-      held[index] = native.held(index)
-    end
-    return held
-  end
-
-  local function effector_for(arguments, options)
-    local station = lookup.station(arguments[1])
-    local robot = lookup.robot_for(station.name, options)
-    return lookup.effector(options.gripper, station.by[robot] or nil, robot)
-  end
-
-  -- By robot: the answer of its held command, which CONTINUE gives, too.
-  local answers_held = {}
-
-  function states.keep()
-    local put_back, is_as_was = keep()
-    local robots = #native.layout.robots
-    local answers = table.move(answers_held, 1, robots, 1, {})
-    return function()
-      put_back()
-      answers_held = table.move(answers, 1, robots, 1, {})
-    end, is_as_was
-  end
-
-  -- Runs a command that may be held in a phase. `answer` makes the pairs before the time.
-  local function carried(answer, action, ...)
-    local time = timed(action, ...)
-    local list = answer()
-    list[#list + 1] = time
-    local phase = lookup.phase()
-    list[#list + 1] = phase and { "stop", phase }
-    answers_held[lookup.last_robot()] = answer
-    return tokens.pairs(list)
-  end
-
-  -- Returns a function for the command's gripper, found when the command is first answered: a later CONTINUE need not
-  -- name a robot.
-  local function asker(arguments, options)
-    local gripper
-    return function()
-      gripper = gripper or effector_for(arguments, options)
-      return gripper
-    end
-  end
-
-  local function get(arguments, options)
-    local gripper = asker(arguments, options)
-    return carried(function()
-      return { { "wafer", native.held(gripper()) } }
-    end, commands.get, arguments[1], arguments[2], options)
-  end
-
-  local function put(arguments, options)
-    local held, before, gripper = held_wafers(), commands.centring(), asker(arguments, options)
-    return carried(function()
-      local list, seen = { { "wafer", held[gripper()] } }, commands.centring()
-      if seen and seen ~= before then
-        list[2], list[3], list[4] = { "dx", seen.dx }, { "dy", seen.dy }, { "sd", seen.sd }
-      end
-      return list
-    end, commands.put, arguments[1], arguments[2], options)
-  end
-
-  -- Runs a SWAP; the answer has the taken wafer and the put one.
-  local function swap(arguments, options)
-    local before = held_wafers()
-    return carried(function()
-      local after, taken, put_down = held_wafers(), nil, nil
-      for index, gripper in ipairs(native.layout.grippers) do
-        taken = taken or gripper.on_robot and not before[index] and after[index]
-        put_down = put_down or gripper.on_robot and not after[index] and before[index]
-      end
-      return { { "wafer", taken or nil }, { "put", put_down or nil } }
-    end, commands.swap, arguments[1], arguments[2], options)
-  end
-
-  -- "3" as a number, "1,3" as a list.
-  local function slots_of(text)
-    if not text or text:match("^%d+$") then
-      return text and math.tointeger(tonumber(text))
-    end
-    local list = {}
-    for slot in text:gmatch("[^,]+") do
-      list[#list + 1] = slot:match("^%d+$") and math.tointeger(tonumber(slot))
-    end
-    if not text:find("^%d+[%d,]*$") then
-      native.fail("BAD_ARGUMENT", ("wafers: %s (expected how many, or slots such as 1,3)"):format(lookup.quote(text)))
-    end
-    return list
-  end
-
-  -- "3:crossed,5:double" as a table.
-  local function changes_of(text)
-    local changes = text and {} or nil
-    for part in (text or ""):gmatch("[^,]+") do
-      local slot, how = part:match("^(%d+):(%a+)$")
-      if not slot then
-        native.fail("BAD_ARGUMENT", ("slots: %s (expected SLOT:HOW, such as 3:crossed)"):format(lookup.quote(part)))
-      end
-      changes[math.tointeger(tonumber(slot))] = how
-    end
-    return changes
-  end
-
-  local function carrier(arguments, options)
-    local name
-    local time = timed(function()
-      name = commands.carrier(arguments[1], { name = options.name, at = options.at, wafers = slots_of(options.wafers),
-        slots = changes_of(options.slots) })
-    end)
-    return tokens.pairs({ { "carrier", name }, time })
-  end
-
-  local function continue()
-    local answer
-    local function answer_again()
-      return answer()
-    end
-    return carried(answer_again, function()
-      commands.continue()
-      answer = answers_held[lookup.last_robot()]
-    end)
-  end
-
-  local function map(arguments, options)
-    local codes
-    local time = timed(function() codes = commands.map(arguments[1], options) end)
-    return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
-  end
-
-  -- The answer has the number of samples, and the least and the most of those that came; the samples
-  -- themselves are published.
-  local function edge_scan(arguments)
-    local scan, least, most
-    local time = timed(function() scan = commands.edge_scan(arguments[1]) end)
-    for _, sample in ipairs(scan.samples) do
-      if sample >= 0 then
-        least = math.min(least or sample, sample)
-        most = math.max(most or sample, sample)
-      end
-    end
-    return tokens.pairs { { "count", scan.count }, { "first", scan.first }, { "missed", scan.missed },
-      { "least", least }, { "most", most }, time }
-  end
-
-  -- The fields of an answer in order, with their names there.
-  local ALIGNED = {
-    { "mark", "mark" }, { "eccentricity", "eccentricity" }, { "direction", "direction_deg" }, { "dx", "dx" },
-    { "dy", "dy" }, { "notch", "notch_deg" }, { "turn", "turn_deg" }, { "correction", "correction" },
-    { "correction_angle", "correction_angle_deg" }, { "after_dx", "after_dx" }, { "after_dy", "after_dy" },
-    { "after_notch", "after_notch_deg" }, { "radius", "radius" }, { "sd_centre", "sd_centre" },
-    { "sd_notch", "sd_notch_deg" }, { "seconds", "seconds" },
-  }
-
-  local function align(arguments, options)
-    local list = {}
-    options.angle = arguments[2]
-    local found = commands.align(arguments[1], options)
-    for _, field in ipairs(ALIGNED) do
-      list[#list + 1] = found[field[1]] and { field[2], found[field[1]] }
-    end
-    return tokens.pairs(list)
-  end
-
-  local CALIBRATED = { "offset", "sd_offset", "zero", "sd_zero", "gain", "sd_gain", "latency", "sd_latency",
-    "mismatch", "seconds" }
-
-  local function calibrate(arguments, options)
-    local list = {}
-    local found = commands.calibrate(arguments[1], options)
-    for place, name in ipairs(CALIBRATED) do
-      list[place] = { name, found[name] }
-    end
-    return tokens.pairs(list)
-  end
-
-  local function teach(arguments, options)
-    local taught
-    local time = timed(function() taught = commands.teach(arguments[1], options) end)
-    return tokens.pairs {
-      { "x", taught.at[1] }, { "y", taught.at[2] }, { "z", taught.at[3] }, { "yaw_deg", taught.rpy[3] }, time,
-    }
-  end
-
-  local function offset_text(dx, dy, dz, tilt)
-    return tokens.pairs { { "dx", dx }, { "dy", dy }, { "dz", dz }, { "tilt_deg", tilt } }
-  end
-
-  local function offset(arguments)
-    return offset_text(queries.offset(arguments[1], arguments[2], arguments[3]))
-  end
-
-  local function proximity(arguments)
-    local p = queries.proximity(arguments[1], arguments[2])
-    local failed = {}
-    for condition in pairs(p.failed) do
-      failed[#failed + 1] = condition
-    end
-    return tokens.pairs {
-      { "ready", tostring(p.ready) }, { "n1_proj_n2", p.n1_proj_n2 }, { "dr_proj_z", p.dr_proj_z },
-      { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] },
-      { "dr_proj_xy_norm", p.dr_proj_xy_norm },
-    } .. " failed=" .. (#failed > 0 and table.concat(failed, ",") or "none")
-  end
-
-  local function measure(arguments)
-    local found = queries.measure(arguments[1], arguments[2])
-    return tokens.pairs {
-      { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
-      { "angle_deg", found.angle }, { "turn_deg", found.turn }, { "heading_deg", found.heading },
-    }
-  end
-
-  local function distance(arguments)
-    return tokens.pairs { { "distance", queries.distance(arguments[1], arguments[2]) } }
-  end
-
-  local function angle(arguments)
-    return tokens.pairs { { "angle_deg", queries.angle(arguments[1], arguments[2]) } }
-  end
-
-  local function describe_wafer(layout, name, index)
-    local station, slot = native.locate(index)
-    local holder = native.holder(index)
-    holder = holder and layout.grippers[holder].name
-    local text = tokens.pairs { { "wafer", name }, { "holder", holder }, { "station", station } }
-    if station then
-      local offset_there = offset_text(native.measure(index, layout.stations[station].index, slot))
-      text = ("%s slot=%d %s"):format(text, slot, offset_there)
-    end
-    return text
-  end
-
-  local function where(arguments)
-    local list, bytes = {}, 0
-    local layout = native.layout
-    local asked = #arguments > 0 and arguments or native.wafer_names()
-    for place, name in ipairs(asked) do
-      if bytes > LONGEST_ANSWER then
-        list[#list + 1] = ("and %d more"):format(#asked - #list)
-        break
-      end
-      list[#list + 1] = describe_wafer(layout, name, asked == arguments and lookup.wafer(name) or place)
-      bytes = bytes + #list[#list]
-    end
-    return table.concat(list, "; ")
-  end
-
-  local function axes()
-    local at, list = native.axes(), {}
-    for _, robot in ipairs(native.layout.robots) do
-      local owner = lookup.has_several() and tokens.spell(robot.name) .. "." or ""
-      for _, axis in ipairs(robot.axes) do
-        local position = at[axis.index]
-        list[#list + 1] = { owner .. axis.name, axis.turns and math.deg(position) or position }
-      end
-    end
-    for _, gripper in ipairs(native.layout.grippers) do
-      if gripper.axis then
-        local position = at[gripper.axis]
-        list[#list + 1] = { tokens.spell(gripper.name), gripper.kind == "pins" and position or math.deg(position) }
-      end
-    end
-    return tokens.pairs(list)
-  end
-
-  local function stations()
-    local list = {}
-    for name, station in pairs(native.layout.stations) do
-      local chuck = station.chuck and { "chuck", native.layout.grippers[station.chuck].name }
-      list[#list + 1] = tokens.pairs { { "station", name }, { "slots", station.slots }, chuck }
-    end
-    return table.concat(list, "; ")
-  end
-
-  local function station(arguments, options)
-    local found, list = queries.station(arguments[1], options), { { "station", arguments[1] } }
-    for _, name in ipairs(lookup.standing) do
-      list[#list + 1] = found[name] and { name, found[name] }
-    end
-    return tokens.pairs(list)
-  end
-
-  local function set_station(arguments, options)
-    commands.set_station(arguments[1], options)
-    return station(arguments, { robot = options.robot, gripper = options.gripper })
-  end
-
   -- A command's options; for axes, those that the robots have.
   function prompt_commands.options(command)
     local options = command.options or {}
@@ -486,103 +182,28 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tokens.pairs { { "fault", commands.fault(description) } }
   end
 
-  local function alarm(arguments)
-    return tokens.pairs { { "fault", commands.fault { error = arguments[1] } } }
-  end
-
   --------------------------------------------------------------------------------------------------- commands
 
-  -- A script's command that takes its arguments in order; the answer has its time.
-  local function moving(action)
-    return function(arguments, options)
-      return tokens.pairs { timed(action, arguments[1], arguments[2], options) }
-    end
-  end
-
-  local function pattern(arguments, options)
-    return carried(function() return {} end, commands.pattern, arguments[1], arguments[2], arguments[3], options)
-  end
-
-  -- While a command runs, STOP bypasses the queue. Here no command runs, but one may be held.
-  local function stop()
-    background.stop()
-    commands.stop()
-  end
-
-  -- The host executes RESET, which begins the session anew. It comes here only with a word too many.
-  local function reset()
-  end
-
-  -- A task that was begun has no command in the record before simulated time passes.
-  local function status()
-    local text, tasks = native.status(), background.running()
-    return tasks and (text:gsub("^phase=idle", function()
-      return "phase=running " .. tasks
-    end)) or text
-  end
-
-  local function place()
-    return tokens.pairs { { "time", native.utime() / 1e6 } }
-  end
-
-  local function save(arguments)
-    states.save(arguments[1])
-    return place()
-  end
-
-  local function restore(arguments)
-    states.restore(arguments[1])
-    return place()
-  end
-
-  local function undo()
-    local line, left = states.undo()
-    return tokens.pairs { { "undone", line }, { "left", left } } .. " " .. place()
-  end
-
-  local function version()
-    return tokens.pairs { { "version", native.version() } }
-  end
-
-  local function quit()
-    native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone")
-  end
-
-  local function clear(arguments)
-    commands.clear_fault(arguments[1])
-  end
-
-  local function holder(arguments)
-    return tokens.pairs { { "holder", queries.holder(arguments[1]) } }
-  end
-
-  -- A command that takes a table of named numbers.
-  local function moving_by_name(action)
-    return function(_, options)
-      return tokens.pairs { timed(action, options) }
-    end
-  end
-
   prompt_commands.commands = {
-    GET = { takes = { "station", "slot" }, options = get_options, run = get,
+    GET = { takes = { "station", "slot" }, options = get_options, run = answers.get,
             does = "takes the wafer there" },
-    PUT = { takes = { "station", "slot" }, options = put_options, run = put,
+    PUT = { takes = { "station", "slot" }, options = put_options, run = answers.put,
             does = "sets the wafer down there" },
-    CONTINUE = { takes = {}, run = continue,
+    CONTINUE = { takes = {}, run = answers.continue,
                  does = "goes on with what is held, to its next stop or its end" },
-    SWAP = { takes = { "station", "slot" }, options = swap_options, run = swap,
+    SWAP = { takes = { "station", "slot" }, options = swap_options, run = answers.swap,
              does = "takes the wafer there with the empty gripper and puts down the other's" },
-    READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
+    READY = { takes = { "station", "slot" }, options = station_options, run = answers.moving(commands.ready),
               does = "goes in front of the slot, to where GET or PUT enters" },
-    PATTERN = { takes = { "pattern", "station", "slot" }, options = pattern_options, run = pattern,
+    PATTERN = { takes = { "pattern", "station", "slot" }, options = pattern_options, run = answers.pattern,
                 does = "plays a pattern that a file of patterns adds" },
-    MAP = { takes = { "station" }, options = station_options, run = map,
+    MAP = { takes = { "station" }, options = station_options, run = answers.map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin" },
-    TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = teach,
+    TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = answers.teach,
               does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
-    HOME = { takes = {}, run = moving(commands.home),
+    HOME = { takes = {}, run = answers.moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },
-    RECOVER = { takes = {}, run = moving(commands.recover),
+    RECOVER = { takes = {}, run = answers.moving(commands.recover),
                 does = "straight out of the station that the arm stands in" },
     TASK = { takes = { "command" }, repeated = true, keeps = true,
              does = "begins a command that goes on beside those that follow; tells the task's number" },
@@ -593,83 +214,83 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
                does = "adds a signal of this name, or so many, for those who await it" },
     AWAIT = { takes = { "name", "seconds" }, optional = true, run = background.await,
               does = "takes one signal of this name, and waits for it, at most so long" },
-    STOP = { takes = {}, run = stop, does = "ends the command that runs, gives up one that is held" },
-    RESET = { takes = {}, run = reset, keeps = true,
+    STOP = { takes = {}, run = answers.stop, does = "ends the command that runs, gives up one that is held" },
+    RESET = { takes = {}, run = answers.reset, keeps = true,
               does = "reads the layout anew and begins another run, with the layout's wafers" },
-    SAVE = { takes = { "name" }, run = save, keeps = true, alone = true,
+    SAVE = { takes = { "name" }, run = answers.save, keeps = true, alone = true,
              does = "keeps under this name all that simulator and motion control are" },
-    RESTORE = { takes = { "save" }, run = restore, asks = true, alone = true,
+    RESTORE = { takes = { "save" }, run = answers.restore, asks = true, alone = true,
                 does = "puts back what was saved under this name" },
-    UNDO = { takes = {}, run = undo, asks = true, keeps = true, alone = true,
+    UNDO = { takes = {}, run = answers.undo, asks = true, keeps = true, alone = true,
              does = "takes back the last command that changed something, several times" },
-    STATUS = { takes = {}, run = status, keeps = true,
+    STATUS = { takes = {}, run = answers.status, keeps = true,
                does = "what goes on, where the robot is, what is held, the last error" },
-    VERSION = { takes = {}, run = version, keeps = true, does = "the program's version" },
-    ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
+    VERSION = { takes = {}, run = answers.version, keeps = true, does = "the program's version" },
+    ROTATE = { takes = { "station", "degrees" }, run = answers.moving(commands.rotate),
                does = "turns a prealigner's chuck by so much" },
-    EDGE_SCAN = { takes = { "station" }, run = edge_scan,
+    EDGE_SCAN = { takes = { "station" }, run = answers.edge_scan,
                   does = "turns a prealigner's chuck once round while its edge sensor looks at the wafer" },
-    ALIGN = { takes = { "station", "degrees" }, optional = true, options = align_options, run = align,
+    ALIGN = { takes = { "station", "degrees" }, optional = true, options = align_options, run = answers.align,
               does = "turns a prealigner's wafer until its notch points there, to 0 without degrees; "
                 .. "the next GET makes good how it lies" },
-    CALIBRATE = { takes = { "station" }, options = fields(lookup.names(lookup.calibrate_fields)), run = calibrate,
+    CALIBRATE = { takes = { "station" }, options = fields(lookup.names(lookup.calibrate_fields)), run = answers.calibrate,
                   does = "finds out what a prealigner's edge sensor is off by, and takes it off from then on" },
-    OPEN = { takes = { "door" }, run = moving(commands.open), does = "opens a door, and waits until it is" },
-    CLOSE = { takes = { "door" }, run = moving(commands.close),
+    OPEN = { takes = { "door" }, run = answers.moving(commands.open), does = "opens a door, and waits until it is" },
+    CLOSE = { takes = { "door" }, run = answers.moving(commands.close),
               does = "shuts a door, unless an arm stands in its station, and waits until it is shut" },
-    LIFT = { takes = { "station", "up_or_down" }, run = moving(commands.lift),
+    LIFT = { takes = { "station", "up_or_down" }, run = answers.moving(commands.lift),
              does = "UP: pins lift what lies on a prealigner's chuck; DOWN: they set it down there again" },
-    VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
+    VALVE = { takes = { "gripper", "level" }, run = answers.moving(commands.valve),
               does = "0 opens it (vacuum on), 1 closes it" },
     MOVE = { takes = {}, options = fields(lookup.axes, fields(lookup.pose_fields, fields(lookup.shares, { elbow = "elbow" }))),
              beside = fields(lookup.pose_fields, fields(lookup.shares, { elbow = "elbow" })), of_axes = true, needs_option = true,
-             run = moving_by_name(commands.move),
+             run = answers.moving_by_name(commands.move),
              does = "moves the named axes to these positions, degrees and mm; with x, y or elbow the gripper to that pose" },
-    FLIP = { takes = { "flips" }, run = moving(commands.flip),
+    FLIP = { takes = { "flips" }, run = answers.moving(commands.flip),
              does = "turns the blade over, or back; of a flipper the wafer in its clamp" },
     LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
-             run = moving_by_name(commands.line),
+             run = answers.moving_by_name(commands.line),
              does = "moves the end-effector straight by so much, or to x, y, z, mm and mm/s; "
                .. "without a speed as fast as the axes go" },
-    WAIT_FOR = { takes = { "station", "seconds" }, optional = true, run = moving(commands.wait_for),
+    WAIT_FOR = { takes = { "station", "seconds" }, optional = true, run = answers.moving(commands.wait_for),
                  does = "waits until nothing runs in the station by itself, at most so long" },
-    PUMP = { takes = { "station", "side" }, run = moving(commands.pump),
+    PUMP = { takes = { "station", "side" }, run = answers.moving(commands.pump),
              does = "brings a load lock to vacuum or to atmosphere, and waits until it has it" },
     CARRIER = { takes = { "station" }, options = { name = "carrier", wafers = "slots", slots = "changes", at = "number" },
-                run = carrier,
+                run = answers.carrier,
                 does = "a carrier comes to a load port, at once or at a time in s; wafers=3 or wafers=1,3; slots=3:crossed" },
-    PORT = { takes = { "station", "port_state" }, run = moving(commands.port),
+    PORT = { takes = { "station", "port_state" }, run = answers.moving(commands.port),
              does = "brings a load port with its carrier to this state, and waits until it has it" },
-    TAKE_AWAY = { takes = { "station" }, run = moving(commands.take_away),
+    TAKE_AWAY = { takes = { "station" }, run = answers.moving(commands.take_away),
                   does = "the carrier of a load port goes, with what lies in it" },
-    WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
+    WAIT = { takes = { "seconds" }, run = answers.moving(commands.wait), does = "stands still" },
     FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault, breaks = true,
               does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },
-    ALARM = { takes = { "error" }, run = alarm,
+    ALARM = { takes = { "error" }, run = answers.alarm,
               does = "lets the next command that can answer the error of this number do so; tells the fault's number" },
-    CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
+    CLEAR = { takes = { "number" }, run = answers.clear, does = "ends the fault of this number" },
     SET_STATION = { takes = { "station" }, options = fields(lookup.standing, { robot = "robot", gripper = "gripper" }),
-                    of_axes = true, run = set_station,
+                    of_axes = true, run = answers.set_station,
                     does = "from now on the station lies where the gripper is with these axes" },
-    STATION = { takes = { "station" }, options = { robot = "robot", gripper = "gripper" }, run = station, asks = true,
+    STATION = { takes = { "station" }, options = { robot = "robot", gripper = "gripper" }, run = answers.station, asks = true,
                 of_robot = true, keeps = true, does = "where the axes stand with the gripper in its slot 1, degrees and mm" },
-    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, asks = true, keeps = true,
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = answers.offset, asks = true, keeps = true,
                does = "where the wafer is in that slot's frame" },
-    HOLDER = { takes = { "wafer" }, run = holder, asks = true, keeps = true, does = "the gripper that holds the wafer" },
-    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, asks = true, keeps = true,
+    HOLDER = { takes = { "wafer" }, run = answers.holder, asks = true, keeps = true, does = "the gripper that holds the wafer" },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = answers.proximity, asks = true, keeps = true,
                   does = "the check of the wafer against the gripper" },
-    MEASURE = { takes = { "frame", "frame" }, run = measure, asks = true, keeps = true,
+    MEASURE = { takes = { "frame", "frame" }, run = answers.measure, asks = true, keeps = true,
                 does = "how the second frame lies in the first one's axes: "
                   .. "a wafer, gripper, station, slot (A/1) or base" },
-    DISTANCE = { takes = { "frame", "frame" }, run = distance, asks = true, keeps = true, does = "of two frames' origins" },
-    ANGLE = { takes = { "frame", "frame" }, run = angle, asks = true, keeps = true, does = "between two frames' z axes" },
-    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, asks = true, keeps = true,
+    DISTANCE = { takes = { "frame", "frame" }, run = answers.distance, asks = true, keeps = true, does = "of two frames' origins" },
+    ANGLE = { takes = { "frame", "frame" }, run = answers.angle, asks = true, keeps = true, does = "between two frames' z axes" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = answers.where, asks = true, keeps = true,
               does = "where wafers are; without a name, all" },
-    AXES = { takes = {}, run = axes, keeps = true, does = "where the axes stand, degrees and mm" },
-    STATIONS = { takes = {}, run = stations, keeps = true, does = "the stations of the cell" },
+    AXES = { takes = {}, run = answers.axes, keeps = true, does = "where the axes stand, degrees and mm" },
+    STATIONS = { takes = {}, run = answers.stations, keeps = true, does = "the stations of the cell" },
     HELP = { takes = { "command" }, optional = true, run = help, keeps = true,
              does = "the commands, or how one is typed" },
-    QUIT = { takes = {}, run = quit, keeps = true, does = "leaves the prompt" },
+    QUIT = { takes = {}, run = answers.quit, keeps = true, does = "leaves the prompt" },
   }
 
   return prompt_commands

@@ -3,16 +3,15 @@
 -- the order of their creation until none can.
 --
 -- A command gets all mechanisms and stations that it needs at once, first come first served, and never holds one
--- while it waits for another. The station in which a robot stands stays the robot's own.
+-- while it waits for another. The station in which a robot stands stays the robot's own. Their words: task_words.lua.
 
 -- Local copies: a script may set globals of these names.
-local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
-local print, select, setmetatable, table, tostring, type = print, select, setmetatable, table, tostring, type
+local coroutine, error, ipairs, pcall, setmetatable = coroutine, error, ipairs, pcall, setmetatable
+local table, tostring = table, tostring
 
 -- The most tasks besides the script.
 local MOST = 64
--- Only one station at a time has the edge sensors: a state brings one scan. A command that needs
--- them always waits.
+-- Only one station at a time has the edge sensors: a state brings one scan. A command that needs them always waits.
 local SENSORS = "the edge sensors"
 -- Only one pass at a time has the beams and probes: a state brings the latches of one arming.
 local LATCHES = "the beams and probes"
@@ -32,17 +31,6 @@ return function(native, lookup)
   local held = {}      -- resource: the task whose command has it
   local keepers = {}      -- robot: the task whose command it executed last
   local requests = {}  -- of commands that wait for resources, in order
-  local signals = {}   -- name: the number not yet taken
-  local waiters = {}   -- name: the tasks that await it, in order
-
-  local handles = {}
-  local handle_metatable = {
-    __name = "task",
-    __metatable = false,
-    __tostring = function(handle)
-      return handles[handle].name
-    end,
-  }
 
   local function switch(task)
     current = task
@@ -211,7 +199,7 @@ return function(native, lookup)
 
   ------------------------------------------------------------------------------------------------- segments
 
-  local module, words = { open = open }, {}
+  local module = { MOST = MOST, open = open, wait_idle = wait_idle }
 
   -- Plays a segment, as native.play does, while others go on.
   function module.play(segment)
@@ -295,7 +283,8 @@ return function(native, lookup)
     end
   end
 
-  local function refuse_cycle()
+  -- Refuses a wait of the running task that would never end.
+  function module.refuse_cycle()
     if find_cycle(current, current, {}) then
       native.fail("DEADLOCK", complaint())
     end
@@ -361,7 +350,7 @@ return function(native, lookup)
         if current.job and not current.may_wait and not is_sure then
           native.fail("BUSY", waits_for())
         end
-        refuse_cycle()
+        module.refuse_cycle()
         native.command_waits(true, is_sure)
         native.waits(waits_for())
       end
@@ -404,23 +393,15 @@ return function(native, lookup)
     native.hold_mechanisms(false)
   end
 
-  -- The data of a task's command, by task.
+  -- The running task.
   function module.current()
     return current
   end
 
-  ---------------------------------------------------------------------------------------------------- words
+  --------------------------------------------------------------------------------------------- tasks begin and end
 
-  local function task_of(value, place)
-    local task = type(value) == "table" and handles[value]
-    if not task then
-      local text = "task %d: %s (expected what task() has returned)"
-      native.fail("BAD_ARGUMENT", text:format(place, lookup.quote(value)))
-    end
-    return task
-  end
-
-  local function begin(body)
+  -- Begins a task with `body`: it runs when its creator next waits.
+  function module.begin(body)
     open()
     created = created + 1
     local task = { thread = coroutine.create(body), name = "task " .. created, number = created,
@@ -432,19 +413,13 @@ return function(native, lookup)
     return task
   end
 
-  -- Begins a task with `body`: it runs when its creator next waits.
-  function words.task(body)
-    if type(body) ~= "function" then
-      native.fail("BAD_ARGUMENT", ("body: %s (expected a function)"):format(lookup.quote(body)))
-    elseif #tasks == MOST then
-      native.fail("BAD_ARGUMENT", ("%d tasks are alive (expected no more)"):format(MOST))
-    end
-    local handle = setmetatable({}, handle_metatable)
-    handles[handle] = begin(body)
-    return handle
+  -- True if no other task may begin.
+  function module.is_full()
+    return #tasks == MOST
   end
 
-  local function forget_failed(task)
+  -- Somebody has got the error of this task.
+  function module.forget_failed(task)
     for place, other in ipairs(failed) do
       if other == task then
         table.remove(failed, place)
@@ -453,48 +428,14 @@ return function(native, lookup)
     end
   end
 
-  local function all_over(list)
+  -- True if these tasks are over.
+  function module.all_over(list)
     for _, task in ipairs(list) do
       if not task.is_over then
         return false
       end
     end
     return true
-  end
-
-  -- Waits until these tasks are over; returns what they returned, one after another, or raises the first's error.
-  function words.join(...)
-    local list, names, results = {}, {}, {}
-    for place = 1, select("#", ...) do
-      list[place] = task_of((select(place, ...)), place)
-      names[place] = list[place].name
-      if list[place] == current then
-        native.fail("BAD_ARGUMENT", ("%s joins itself (expected another task)"):format(current.name))
-      end
-    end
-    current.joins = list
-    current.waits_for = function()
-      return "the end of " .. table.concat(names, ", ")
-    end
-    local good, problem = pcall(function()
-      refuse_cycle()
-      wait_idle(function()
-        return all_over(list)
-      end, current.waits_for)
-    end)
-    current.joins, current.waits_for = nil, nil
-    if not good then
-      error(problem, 0)
-    end
-    for _, task in ipairs(list) do
-      if not task.results then
-        forget_failed(task)
-        error(task.problem, 0)
-      end
-      table.move(task.results, 1, task.results.n, (results.n or 0) + 1, results)
-      results.n = (results.n or 0) + task.results.n
-    end
-    return table.unpack(results, 1, results.n or 0)
   end
 
   -- Waits as a command's segment does.
@@ -508,18 +449,18 @@ return function(native, lookup)
       native.fail("BAD_ARGUMENT", ("%d tasks are needed (expected at most %d)"):format(#tasks + #list, MOST))
     end
     for place, entry in ipairs(list) do
-      local task = begin(entry.body)
+      local task = module.begin(entry.body)
       task.name, task.line, begun[place] = entry.name, entry.line, task
     end
     wait_until(function()
-      return all_over(begun)
+      return module.all_over(begun)
     end, function()
       return "the end of " .. begun[1].name
     end)
     local failure
     for _, task in ipairs(begun) do
       if not task.results then
-        forget_failed(task)
+        module.forget_failed(task)
         failure = failure or task
       end
     end
@@ -528,74 +469,15 @@ return function(native, lookup)
     end
   end
 
-  local function check_name(name)
-    if type(name) ~= "string" then
-      native.fail("BAD_ARGUMENT", ("name: %s (expected a text)"):format(lookup.quote(name)))
-    end
-    return name
-  end
-
-  local function hand_out(name)
-    local queue = waiters[name] or {}
-    while #queue > 0 and (signals[name] or 0) > 0 do
-      table.remove(queue, 1).is_taken = true
-      signals[name] = signals[name] - 1
+  -- Raises the error of the first task that failed, if no task has got it.
+  function module.raise_failed()
+    if failed[1] then
+      error(failed[1].problem, 0)
     end
   end
 
-  -- Adds n signals of that name, for those who await them.
-  function words.signal(name, n)
-    n = n == nil and 1 or n
-    if math.type(n) ~= "integer" or n < 1 or n > 1000000 then
-      native.fail("BAD_ARGUMENT", ("n: %s (expected a whole number from 1 to 1000000)"):format(lookup.quote(n)))
-    end
-    signals[check_name(name)] = (signals[name] or 0) + n
-    hand_out(name)
-  end
-
-  local function leave(name, waiter)
-    for place, other in ipairs(waiters[name]) do
-      if other == waiter then
-        table.remove(waiters[name], place)
-        return
-      end
-    end
-  end
-
-  -- Takes one signal of that name, and waits for it if there is none: at most so many simulated seconds. False: none came.
-  function words.await(name, timeout)
-    local waiter = {}
-    waiters[check_name(name)] = waiters[name] or {}
-    local queue, limit = waiters[name], timeout ~= nil and lookup.number("timeout", timeout, lookup.ranges.seconds)
-    queue[#queue + 1] = waiter
-    hand_out(name)
-    if not waiter.is_taken and limit then
-      open()
-      native.hold_mechanisms(false)
-      native.start { dwell = limit }
-    end
-    local lane = current.lane
-    local good, problem = pcall(wait_idle, function()
-      return waiter.is_taken or limit and not native.runs(lane)
-    end, function()
-      return "a signal " .. lookup.quote(name)
-    end)
-    if not waiter.is_taken then
-      leave(name, waiter)
-    elseif limit then
-      native.drop_segment()
-    end
-    if not good then
-      error(problem, 0)
-    elseif limit and not waiter.is_taken then
-      native.outcome()
-    end
-    return waiter.is_taken == true
-  end
-
-  -- The script has come to its end; the run ends when all tasks are over. A failed task whose error no task has got
-  -- fails the run.
-  function module.finish()
+  -- The running task waits until all others are over. False if there never was one.
+  function module.wait_for_all()
     if is_open then
       native.begin_word("the script's end")
       wait_idle(function()
@@ -603,18 +485,8 @@ return function(native, lookup)
       end, function()
         return "the end of all tasks"
       end)
-      local names = {}
-      for name, count in pairs(signals) do
-        names[#names + 1] = count > 0 and name or nil
-      end
-      table.sort(names)
-      for _, name in ipairs(names) do
-        print(("signal %s: %d left that nobody awaited"):format(lookup.quote(name), signals[name]))
-      end
-      if failed[1] then
-        error(failed[1].problem, 0)
-      end
     end
+    return is_open
   end
 
   ----------------------------------------------------------------------------------------------------- jobs
@@ -633,7 +505,7 @@ return function(native, lookup)
 
   -- Begins a job without a handle: handles are kept, and a host sends many jobs.
   local function begin_job(execute, job)
-    local task = begin(function()
+    local task = module.begin(function()
       local line = job.line
       native.begin_job(job.number)
       while line do
@@ -658,15 +530,12 @@ return function(native, lookup)
       end
       return #tasks == 0
     end)
-    if failed[1] then
-      error(failed[1].problem, 0)
-    end
+    module.raise_failed()
   end
 
   function module.is_any_alive()
     return #tasks > 0
   end
 
-  module.words = words
   return module
 end
