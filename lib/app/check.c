@@ -163,7 +163,7 @@ static int64_t slice_at(lua_State *L, const checked_t *checked) {
     const double seconds = luaL_checknumber(L, 1);
     const double slice = floor(seconds * 1e6 / (double)checked->run.cell.layout->slice_us + 1e-6);
     luaL_argcheck(L, slice >= 0 && slice < 9e15, 1, "expected a time of the run in seconds");
-    if (slice > (double)checked->run.seq) {
+    if (slice > (double)checked->run.taken.seq) {
         luaL_error(L, "at: %f s (expected a time of the run, which ends at %f s)", seconds,
                    wh_log_run_end(&checked->run));
     }

@@ -59,35 +59,36 @@ static void print_counted(int64_t count, const char *one, const char *many) {
 }
 
 static void print_counts(const wh_replay_run_t *run, bool lacks_end) {
-    print_counted(run->unanswered, "command whose state is not in the log",
+    print_counted(run->slices.unanswered, "command whose state is not in the log",
                   "commands whose states are not in the log");
     if (lacks_end) {
-        print_counted(run->last_unanswered, "command at the end: the log ends before its state",
+        print_counted(run->slices.last_unanswered, "command at the end: the log ends before its state",
                       "commands at the end: the log ends before their states");
     } else {
-        print_counted(run->last_unanswered, "command at the run's end whose state is not in the log",
+        print_counted(run->slices.last_unanswered, "command at the run's end whose state is not in the log",
                       "commands at the run's end whose states are not in the log");
     }
-    print_counted(run->outside_valves, "slice with valves from outside", "slices with valves from outside");
-    print_counted(run->missed, "slice that never reached the simulator",
+    print_counted(run->slices.outside_valves, "slice with valves from outside",
+                  "slices with valves from outside");
+    print_counted(run->slices.missed, "slice that never reached the simulator",
                   "slices that never reached the simulator");
     print_counted(run->refused, "command that the simulator refused, and so does the replay",
                   "commands that the simulator refused, and so does the replay");
     print_counted(run->collisions, "event of the collision check: not compared",
                   "events of the collision check: not compared");
-    if (run->taken_up > 0) {
+    if (run->slices.taken_up > 0) {
         printf("  taken up from a recorded state %" PRId64 " %s, where commands are not in the log\n",
-               run->taken_up, run->taken_up == 1 ? "time" : "times");
+               run->slices.taken_up, run->slices.taken_up == 1 ? "time" : "times");
     }
-    print_counted(run->skipped, "slice was passed over", "slices were passed over");
+    print_counted(run->slices.skipped, "slice was passed over", "slices were passed over");
     print_counted(
-        run->doubtful,
+        run->slices.doubtful,
         "slice that is not as recorded behind commands without states: their valves are not known",
         "slices that are not as recorded behind commands without states: their valves are not known");
 }
 
 static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *run) {
-    if (run->differing == 0) {
+    if (run->slices.differing == 0) {
         return;
     }
     const wh_replay_difference_t *difference = &run->difference;
@@ -95,28 +96,29 @@ static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *r
     printf("  %s at slice %" PRId64 ": %s: recorded %.17g, replayed %.17g; %" PRId64 " of %" PRId64
            " slices differ%s\n",
            doubtful ? "not the same" : "DIFFERS", difference->slice, difference->what, difference->recorded,
-           difference->replayed, run->differing, run->compared,
+           difference->replayed, run->slices.differing, run->slices.compared,
            doubtful ? ", or the cell does: nothing vouches for it" : "");
 }
 
 /* Says why the run failed: the reason that motion control told, or the one that remains by its counts. */
 static void print_reason(const wh_replay_run_t *run) {
-    if (run->reason) {
-        char *reason = wh_style_printable(run->reason);
+    if (run->over.reason) {
+        char *reason = wh_style_printable(run->over.reason);
         printf("; %s", reason);
         free(reason);
-    } else if (run->told.verdict == WH_OUTCOME_FAILED && run->told.met == run->told.expectations) {
+    } else if (run->over.outcome.verdict == WH_OUTCOME_FAILED &&
+               run->over.outcome.met == run->over.outcome.expectations) {
         fputs("; the cell complained", stdout);
     }
 }
 
 static void print_outcome(const wh_replay_run_t *run) {
-    const wh_outcome_verdict_t verdict = run->told.verdict;
-    if (run->is_told_wrong) {
+    const wh_outcome_verdict_t verdict = run->over.outcome.verdict;
+    if (run->over.is_wrong) {
         puts("  what the log tells of the run's result contradicts itself");
     } else if (verdict == WH_OUTCOME_PASSED || verdict == WH_OUTCOME_FAILED) {
         printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met", wh_outcome_word(verdict),
-               run->told.met, run->told.expectations);
+               run->over.outcome.met, run->over.outcome.expectations);
         print_reason(run);
         putchar('\n');
     } else if (verdict == WH_OUTCOME_ENDED) {
@@ -132,8 +134,8 @@ static void print_outcome(const wh_replay_run_t *run) {
 }
 
 static void print_other_layout(const wh_replay_run_t *run) {
-    if (run->is_other_layout) {
-        print_counted(run->homeless, "command of another layout, which the simulator refused",
+    if (run->homeless.is_other_layout) {
+        print_counted(run->homeless.count, "command of another layout, which the simulator refused",
                       "commands of another layout, which the simulator refused");
     }
 }
@@ -147,8 +149,8 @@ static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
     }
     printf("run %016" PRIx64 ": slices %" PRId64 " to %" PRId64 ", %" PRId64 " compared, hash %016" PRIx64
            "%s\n",
-           (uint64_t)run->run, run->first_slice, run->last_slice, run->compared, run->hash,
-           run->over ? "" : "; its end is not in the log");
+           (uint64_t)run->run, run->first_slice, run->last_slice, run->slices.compared, run->hash,
+           run->over.is_told ? "" : "; its end is not in the log");
     if (run->begins_in_part) {
         printf("  begins in the part before this one of its recording\n");
     }
@@ -178,7 +180,7 @@ static void print_place(const wh_log_files_t *files, size_t file, uint64_t at) {
 
 static void print_losses(const wh_replay_t *replay, const wh_log_files_t *files) {
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
-        const wh_replay_count_t *loss = &replay->losses[i];
+        const wh_replay_count_t *loss = &replay->heard.losses[i];
         if (loss->count > 0) {
             printf("%" PRIu64 " %s, the first at ", loss->count,
                    loss->count == 1 ? wh_reading_losses[i].one : wh_reading_losses[i].many);
@@ -186,8 +188,8 @@ static void print_losses(const wh_replay_t *replay, const wh_log_files_t *files)
             putchar('\n');
         }
     }
-    if (replay->proximities > 0) {
-        printf("%" PRIu64 " proximities could not be compared\n", replay->proximities);
+    if (replay->heard.proximities > 0) {
+        printf("%" PRIu64 " proximities could not be compared\n", replay->heard.proximities);
     }
     if (replay->runs_left_out > 0) {
         printf("more than %d runs: the rest is left out\n", WH_REPLAY_RUNS);
@@ -269,7 +271,7 @@ static void print_damage(const wh_log_files_t *files, const wh_reading_t *readin
 
 /* Prints the facts about several files that a reader needs. */
 static void print_files(const result_t *result) {
-    const size_t unclosed = result->replay->open_files;
+    const size_t unclosed = result->replay->files.open_files;
     if (result->files->count > 1) {
         printf("%zu files, read as one log\n", result->files->count);
     }
@@ -312,7 +314,7 @@ static int print_table(const result_t *result) {
 /* ------------------------------------------------------------------------------------------- for programs */
 
 static json_t *difference_to_json(const wh_replay_run_t *run) {
-    if (run->differing == 0) {
+    if (run->slices.differing == 0) {
         return json_null();
     }
     const wh_replay_difference_t *from = &run->difference;
@@ -322,36 +324,37 @@ static json_t *difference_to_json(const wh_replay_run_t *run) {
 }
 
 static json_t *outcome_to_json(const wh_replay_run_t *run) {
-    const wh_run_told_t *told = &run->told;
-    if (told->verdict == WH_OUTCOME_UNTOLD && !run->is_told_wrong) {
+    const wh_run_told_t *told = &run->over.outcome;
+    if (told->verdict == WH_OUTCOME_UNTOLD && !run->over.is_wrong) {
         return json_null();
     }
     return wh_json_add(json_object(),
                        "verdict reason contradicts commands expectations met cycles expectations_lost",
-                       wh_json_text(wh_outcome_word(told->verdict)), wh_json_text(run->reason),
-                       json_boolean(run->is_told_wrong), json_integer(told->commands),
+                       wh_json_text(wh_outcome_word(told->verdict)), wh_json_text(run->over.reason),
+                       json_boolean(run->over.is_wrong), json_integer(told->commands),
                        json_integer(told->expectations), json_integer(told->met), json_integer(told->cycles),
                        json_integer(wh_reading_lost_expectations(run)), NULL);
 }
 
 static json_t *run_to_json(const void *subject, size_t i) {
     const wh_replay_run_t *run = &((const wh_replay_t *)subject)->runs[i];
-    json_t *object =
-        wh_json_add(json_object(), "run first_slice last_slice compared differing unanswered last_unanswered",
-                    wh_json_hash((uint64_t)run->run), json_integer(run->first_slice),
-                    json_integer(run->last_slice), json_integer(run->compared), json_integer(run->differing),
-                    json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
+    json_t *object = wh_json_add(
+        json_object(), "run first_slice last_slice compared differing unanswered last_unanswered",
+        wh_json_hash((uint64_t)run->run), json_integer(run->first_slice), json_integer(run->last_slice),
+        json_integer(run->slices.compared), json_integer(run->slices.differing),
+        json_integer(run->slices.unanswered), json_integer(run->slices.last_unanswered), NULL);
     return wh_json_add(object,
                        "outside_valves taken_up skipped lost_end missed refused other_layout doubtful "
                        "collisions_not_compared begins_in_part goes_on_from over hash outcome "
                        "first_difference",
-                       json_integer(run->outside_valves), json_integer(run->taken_up),
-                       json_integer(run->skipped), json_integer(wh_reading_lost_end(run)),
-                       json_integer(run->missed), json_integer(run->refused),
-                       json_integer(run->is_other_layout ? run->homeless : 0), json_integer(run->doubtful),
-                       json_integer(run->collisions), json_boolean(run->begins_in_part),
+                       json_integer(run->slices.outside_valves), json_integer(run->slices.taken_up),
+                       json_integer(run->slices.skipped), json_integer(wh_reading_lost_end(run)),
+                       json_integer(run->slices.missed), json_integer(run->refused),
+                       json_integer(run->homeless.is_other_layout ? run->homeless.count : 0),
+                       json_integer(run->slices.doubtful), json_integer(run->collisions),
+                       json_boolean(run->begins_in_part),
                        run->goes_on_from != 0 ? wh_json_hash((uint64_t)run->goes_on_from) : json_null(),
-                       json_boolean(run->over), wh_json_hash(run->hash), outcome_to_json(run),
+                       json_boolean(run->over.is_told), wh_json_hash(run->hash), outcome_to_json(run),
                        difference_to_json(run), NULL);
 }
 
@@ -383,13 +386,14 @@ static void put_recording(const wh_replay_recording_t *recording, json_t *root) 
 static void put_losses(const wh_replay_t *replay, json_t *root) {
     json_t *first = json_object();
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
-        wh_json_put(root, wh_reading_losses[i].key, json_integer((json_int_t)replay->losses[i].count));
-        if (replay->losses[i].count > 0) {
-            wh_json_put(first, wh_reading_losses[i].key, json_integer((json_int_t)replay->losses[i].first));
+        wh_json_put(root, wh_reading_losses[i].key, json_integer((json_int_t)replay->heard.losses[i].count));
+        if (replay->heard.losses[i].count > 0) {
+            wh_json_put(first, wh_reading_losses[i].key,
+                        json_integer((json_int_t)replay->heard.losses[i].first));
         }
     }
     wh_json_put(root, "first_bytes", first);
-    wh_json_put(root, "proximities_not_compared", json_integer((json_int_t)replay->proximities));
+    wh_json_put(root, "proximities_not_compared", json_integer((json_int_t)replay->heard.proximities));
     wh_json_put(root, "runs_left_out", json_integer((json_int_t)replay->runs_left_out));
 }
 
@@ -419,7 +423,7 @@ static int print_json(const result_t *result) {
         wh_json_text(result->reason[0] ? result->reason : NULL), json_boolean(result->arguments->lenient),
         wh_json_text(result->arguments->path), json_integer((json_int_t)result->reading->events), NULL);
     wh_json_put(root, "files", wh_json_list(path_to_json, result->files, result->files->count));
-    wh_json_put(root, "files_not_closed", json_integer((json_int_t)result->replay->open_files));
+    wh_json_put(root, "files_not_closed", json_integer((json_int_t)result->replay->files.open_files));
     put_recording(&result->replay->recording, root);
     put_losses(result->replay, root);
     put_file(result->reading, root);

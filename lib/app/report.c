@@ -81,8 +81,8 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
         fprintf(stderr, "%s: %s: %s\n", given->script, run->worth.verdict, run->worth.reason);
     }
     const wh_document_t document = {.source = "log",
-                                    .notes = run->notes,
-                                    .note_count = run->note_count,
+                                    .notes = run->notes.texts,
+                                    .note_count = run->notes.count,
                                     .record = &run->record,
                                     .signals = &run->signals};
     return wh_run_files_write(&arguments->run, &document) &&

@@ -154,7 +154,7 @@ static void forget_running(wh_mcs_process_t *control, int32_t task) {
 static void tell_running(wh_mcs_process_t *control, const wh_mcs_process_running_t *running, int32_t phase,
                          const char *command, const char *text) {
     const bool goes_on = phase == WH_LINK_PHASE_BEGINS || phase == WH_LINK_PHASE_GOES_ON;
-    const int64_t request = goes_on && running->task == 0 ? control->executing.seq : 0;
+    const int64_t request = goes_on && running->task == 0 ? control->requests.executing.seq : 0;
     waferhand_mcs message = wh_mcs_process_message(control, request, phase, WH_OK, command, text);
     message.task = running->task;
     message.line = running->line;
@@ -315,7 +315,7 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
 
 static bool is_heard(void *user) {
     const wh_mcs_process_t *control = user;
-    return control->client.has_state;
+    return control->client.taken.is_there;
 }
 
 /* ------------------------------------------------------------------------------------------- explanations */
@@ -423,7 +423,7 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
     }
     tell_progress(control);
     if (control->running_count == 0) {
-        wh_mcs_process_tell(control, control->executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
+        wh_mcs_process_tell(control, control->requests.executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
     }
 }
 
@@ -436,7 +436,7 @@ void wh_mcs_process_finish(wh_mcs_process_t *control) {
 
 void wh_mcs_process_close(wh_mcs_process_t *control) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
-        free(control->answered[i].text);
-        control->answered[i].text = NULL;
+        free(control->requests.answered[i].text);
+        control->requests.answered[i].text = NULL;
     }
 }

@@ -57,6 +57,16 @@ typedef struct {
     char text[WH_LINK_LINE];
 } wh_mcs_process_running_t;
 
+/* Requests that came, and answers that may be asked for again. */
+typedef struct {
+    wh_mcs_process_request_t executing; /* seq 0: none */
+    wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
+    size_t first_waiting, waiting_count;
+    wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
+    size_t answered_count;
+    uint64_t garbage; /* datagrams on WAFERHAND_REQUEST that are no request */
+} wh_mcs_process_requests_t;
+
 /* It must not be moved once opened. */
 typedef struct {
     wh_node_t *node;
@@ -70,14 +80,9 @@ typedef struct {
     int64_t utime, seq;
     wh_mcs_process_running_t running[WH_MCS_LANES]; /* in the order in which they began */
     size_t running_count;
-    wh_status_t ended_with;             /* the last command's status; other than WH_OK if it failed */
-    wh_mcs_process_request_t executing; /* seq 0: none */
+    wh_status_t ended_with; /* the last command's status; other than WH_OK if it failed */
     int64_t last_beat_us;
-    wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
-    size_t first_waiting, waiting_count;
-    wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
-    size_t answered_count;
-    uint64_t garbage;                      /* datagrams on WAFERHAND_REQUEST that are no request */
+    wh_mcs_process_requests_t requests;
     wh_senders_t speakers;                 /* motion controls on WAFERHAND_MCS */
     int32_t stations_told;                 /* what stations did by themselves, in this run */
     wh_run_told_t outcome;                 /* the messages so far, and the verdict once there is one */

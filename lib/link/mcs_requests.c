@@ -20,8 +20,8 @@
 
 static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
-        if (control->answered[i].message.request == seq) {
-            return &control->answered[i];
+        if (control->requests.answered[i].message.request == seq) {
+            return &control->requests.answered[i];
         }
     }
     return NULL;
@@ -29,21 +29,22 @@ static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *contro
 
 /* The request that waits or is executed under this number; otherwise null. */
 static const wh_mcs_process_request_t *find_pending(const wh_mcs_process_t *control, int64_t seq) {
-    for (size_t i = 0; i < control->waiting_count; ++i) {
+    for (size_t i = 0; i < control->requests.waiting_count; ++i) {
         const wh_mcs_process_request_t *request =
-            &control->waiting[(control->first_waiting + i) % WH_CONTROL_REQUESTS];
+            &control->requests.waiting[(control->requests.first_waiting + i) % WH_CONTROL_REQUESTS];
         if (request->seq == seq) {
             return request;
         }
     }
-    return control->executing.seq == seq ? &control->executing : NULL;
+    return control->requests.executing.seq == seq ? &control->requests.executing : NULL;
 }
 
 /* If a text does not fit a datagram, the answer tells how much is left. */
 static void remember(wh_mcs_process_t *control, const wh_mcs_process_request_t *request, wh_status_t error,
                      const char *text) {
     const int32_t phase = error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED;
-    wh_mcs_process_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
+    wh_mcs_process_answer_t *answer =
+        &control->requests.answered[control->requests.answered_count++ % WH_CONTROL_ANSWERED];
     free(answer->text);
     snprintf(answer->line, sizeof answer->line, "%s", request->line);
     answer->run = request->run;
@@ -96,25 +97,25 @@ static bool turn_away_misdirected(wh_mcs_process_t *control, const wh_mcs_proces
 
 /* The next request that waits becomes the one being executed. */
 static bool take_waiting(wh_mcs_process_t *control) {
-    if (control->waiting_count == 0) {
+    if (control->requests.waiting_count == 0) {
         return false;
     }
-    control->executing = control->waiting[control->first_waiting];
-    control->first_waiting = (control->first_waiting + 1) % WH_CONTROL_REQUESTS;
-    --control->waiting_count;
+    control->requests.executing = control->requests.waiting[control->requests.first_waiting];
+    control->requests.first_waiting = (control->requests.first_waiting + 1) % WH_CONTROL_REQUESTS;
+    --control->requests.waiting_count;
     return true;
 }
 
 /* Answers the requests that wait, without beginning them. */
 void wh_mcs_process_clear(wh_mcs_process_t *control) {
     char text[REASON_BYTES];
-    const wh_mcs_process_request_t executing = control->executing;
+    const wh_mcs_process_request_t executing = control->requests.executing;
     wh_session_write_error(text, sizeof text, WH_STATUS_STOPPED,
                            "the command was stopped before its end; it waited and was not begun");
     while (take_waiting(control)) {
-        remember(control, &control->executing, WH_STATUS_STOPPED, text);
+        remember(control, &control->requests.executing, WH_STATUS_STOPPED, text);
     }
-    control->executing = executing;
+    control->requests.executing = executing;
 }
 
 /* Ends all requests and the running command. Between two commands of a script it ends the next one. */
@@ -162,13 +163,14 @@ static void stop_mechanism(wh_mcs_process_t *control, const wh_mcs_process_reque
 }
 
 static void enqueue(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
-    if (control->waiting_count == WH_CONTROL_REQUESTS) {
+    if (control->requests.waiting_count == WH_CONTROL_REQUESTS) {
         turn_away(control, request->seq, request->line, WH_STATUS_BUSY,
                   "another command is being executed; %d requests wait (expected fewer)",
                   WH_CONTROL_REQUESTS);
         return;
     }
-    control->waiting[(control->first_waiting + control->waiting_count++) % WH_CONTROL_REQUESTS] = *request;
+    control->requests.waiting[(control->requests.first_waiting + control->requests.waiting_count++) %
+                              WH_CONTROL_REQUESTS] = *request;
 }
 
 /* Takes a new request for this run and layout. */
@@ -246,7 +248,7 @@ static void drop(wh_mcs_process_t *control, const void *data, size_t size) {
             "a datagram of %zu bytes is no whole request (expected a line without a byte 0 but its last)",
             size);
     }
-    if (control->garbage++ == 0) {
+    if (control->requests.garbage++ == 0) {
         wh_node_warn(control->node,
                      WH_CHANNEL_REQUEST ": a datagram of %zu bytes is no request and was dropped; "
                                         "others will be dropped without a word here",
@@ -271,18 +273,18 @@ void wh_mcs_process_on_request(void *user, const void *data, size_t size) {
 /* An earlier RESET may have begun another run since the request came. */
 bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]) {
     while (take_waiting(control)) {
-        if (!turn_away_misdirected(control, &control->executing, control->executing.line)) {
-            snprintf(line, WH_LINK_LINE, "%s", control->executing.line);
+        if (!turn_away_misdirected(control, &control->requests.executing, control->requests.executing.line)) {
+            snprintf(line, WH_LINK_LINE, "%s", control->requests.executing.line);
             return true;
         }
-        control->executing.seq = 0;
+        control->requests.executing.seq = 0;
     }
     return false;
 }
 
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *text) {
-    const wh_mcs_process_request_t executed = control->executing;
-    control->executing.seq = 0;
+    const wh_mcs_process_request_t executed = control->requests.executing;
+    control->requests.executing.seq = 0;
     remember(control, &executed, error, text);
 }
 

@@ -35,7 +35,7 @@ static bool is_stopped(const wh_protocol_client_t *client) {
 
 /* True from the second slice of a free-running run on. Its first slice is in lockstep. */
 static bool is_free_running(const wh_protocol_client_t *client) {
-    return client->options.rate > 0 && client->has_state;
+    return client->options.rate > 0 && client->taken.is_there;
 }
 
 /* ------------------------------------------------------------------------------------------------ sending */
@@ -51,8 +51,8 @@ void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *comman
 
 /* Sends the last command. The simulator owes an answer from the first unanswered command on. */
 static void send_command(wh_protocol_client_t *client) {
-    if (client->asked_us == 0) {
-        client->asked_us = wh_node_clock_us();
+    if (client->silence.asked_us == 0) {
+        client->silence.asked_us = wh_node_clock_us();
     }
     wh_protocol_client_publish(client->node, &client->command);
 }
@@ -65,23 +65,23 @@ static void send_again(wh_protocol_client_t *client) {
 /* Sends the last state, then the command, if a simulator that was started again has asked for it. */
 static void restore_simulator(wh_protocol_client_t *client) {
     const int64_t now = wh_node_clock_us();
-    const bool asked = client->asked_for_state;
-    client->asked_for_state = false;
-    if (!asked || !client->has_state) {
+    const bool asked = client->restoring.is_asked;
+    client->restoring.is_asked = false;
+    if (!asked || !client->taken.is_there) {
         return;
     }
-    if (client->restores_most > 0 && client->restores++ == client->restores_most) {
+    if (client->restoring.most > 0 && client->restoring.count++ == client->restoring.most) {
         client->refusal = WH_STATUS_NOT_RESTORED;
         return;
     }
-    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* we asked for it, so it is no news */
-    if (client->restores_most == 0 && !client->senders.shared &&
-        (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
-        client->restored_us = now;
+    client->counters.restored += client->restoring.most > 0 ? 0 : 1; /* we asked for it, so it is no news */
+    if (client->restoring.most == 0 && !client->senders.shared &&
+        (client->restoring.told_us == 0 || now - client->restoring.told_us > RESTORE_SAID_US)) {
+        client->restoring.told_us = now;
         wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
-                     client->state.seq);
+                     client->taken.state.seq);
     }
-    (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
+    (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restoring.bytes, client->restoring.size);
     send_again(client);
 }
 
@@ -89,10 +89,10 @@ static void restore_simulator(wh_protocol_client_t *client) {
 
 /* Notes that the simulator lives. */
 static void heard(wh_protocol_client_t *client) {
-    client->asked_us = 0;
-    client->timed_out = false;
-    if (client->silent) {
-        client->silent = false;
+    client->silence.asked_us = 0;
+    client->silence.timed_out = false;
+    if (client->silence.is_told) {
+        client->silence.is_told = false;
         wh_node_say(client->node, "the simulator answers again");
     }
     if (wh_senders_hear(&client->senders, client->node->sender)) {
@@ -108,37 +108,38 @@ static bool take_over(wh_protocol_client_t *client, const waferhand_state *messa
     if (!wh_link_state_is_sound(message, layout, &client->spare, state)) {
         return false;
     }
-    wh_grasp_t table = wh_link_table(message, layout, &client->arrays);
+    wh_grasp_t table = wh_link_table(message, layout, &client->taken.arrays);
     return wh_grasp_restore(&table, table.slice, state->wafers, state->grippers) == WH_OK;
 }
 
 static void take(wh_protocol_client_t *client, const waferhand_state *message, const wh_state_t *state,
                  const void *data, size_t size) {
-    const bool is_new = !client->has_state || state->seq != client->state.seq;
+    const bool is_new = !client->taken.is_there || state->seq != client->taken.state.seq;
     if (is_new) {
-        const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
+        const size_t room =
+            sizeof client->heard.events / sizeof client->heard.events[0] - client->heard.count;
         const size_t count = state->event_count < room ? state->event_count : room;
-        memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
-        client->event_count += count;
-        client->has_lost_events =
-            client->has_lost_events || state->has_lost_events || count < state->event_count;
+        memcpy(client->heard.events + client->heard.count, state->events, count * sizeof *state->events);
+        client->heard.count += count;
+        client->heard.has_lost =
+            client->heard.has_lost || state->has_lost_events || count < state->event_count;
     }
-    client->state = *state;
-    client->state.wafers = client->arrays.wafers;
-    client->state.grippers = client->arrays.grippers;
-    client->arrays.physics = *state->physics;
-    client->state.physics = &client->arrays.physics;
-    client->has_state = true;
+    client->taken.state = *state;
+    client->taken.state.wafers = client->taken.arrays.wafers;
+    client->taken.state.grippers = client->taken.arrays.grippers;
+    client->taken.arrays.physics = *state->physics;
+    client->taken.state.physics = &client->taken.arrays.physics;
+    client->taken.is_there = true;
     if (is_new) {
         wh_protocol_client_compare(client, message);
     }
     if (is_new && client->options.taken) {
-        client->options.taken(client->options.user, &client->state);
+        client->options.taken(client->options.user, &client->taken.state);
     }
-    client->missed = message->missed;
-    client->hash = (uint64_t)message->hash;
-    memcpy(client->restore, data, size);
-    client->restore_size = size;
+    client->taken.missed = message->missed;
+    client->taken.hash = (uint64_t)message->hash;
+    memcpy(client->restoring.bytes, data, size);
+    client->restoring.size = size;
     ++client->counters.answers;
     client->answered = client->answered || state->seq == client->command.seq;
 }
@@ -146,14 +147,14 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
 /* True for a slice whose state has not come yet: the last one sent, and in a free run those before it. */
 static bool is_awaited(const wh_protocol_client_t *client, int64_t seq) {
     return seq == client->command.seq ||
-           (is_free_running(client) && seq > client->state.seq && seq < client->command.seq);
+           (is_free_running(client) && seq > client->taken.state.seq && seq < client->command.seq);
 }
 
 static void take_refusal(wh_protocol_client_t *client, const waferhand_state *message) {
     if (!is_awaited(client, message->seq)) {
         ++client->counters.unasked;
     } else if (message->status == WH_STATUS_UNKNOWN_RUN) {
-        client->asked_for_state = true;
+        client->restoring.is_asked = true;
     } else {
         client->refusal = (wh_status_t)message->status;
         client->other_layout_hash = (uint64_t)message->layout_hash;
@@ -210,17 +211,17 @@ static void on_state(void *user, const void *data, size_t size) {
 
 /* The time since which the simulator has owed an answer. */
 static int64_t owed_us(const wh_protocol_client_t *client) {
-    return client->asked_us == 0 ? 0 : wh_node_clock_us() - client->asked_us;
+    return client->silence.asked_us == 0 ? 0 : wh_node_clock_us() - client->silence.asked_us;
 }
 
 /* Reports a silent simulator, once. */
 static void notice_silence(wh_protocol_client_t *client) {
-    if (client->silent || owed_us(client) <= WH_CLIENT_SILENCE_US) {
+    if (client->silence.is_told || owed_us(client) <= WH_CLIENT_SILENCE_US) {
         return;
     }
-    client->silent = true;
+    client->silence.is_told = true;
     ++client->counters.silences;
-    if (client->has_state) {
+    if (client->taken.is_there) {
         wh_node_warn(client->node,
                      "no answer from the simulator: holding at slice %" PRId64 " until it returns",
                      client->command.seq);
@@ -265,14 +266,14 @@ static bool is_interrupted(const wh_protocol_client_t *client) {
 static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us) {
     const int64_t now = wh_node_clock_us();
     if (client->options.timeout_us > 0 && owed_us(client) > client->options.timeout_us) {
-        client->timed_out = true;
+        client->silence.timed_out = true;
         return WH_STATUS_NO_ANSWER;
     }
     if (is_stopped(client) && *stopped_us == 0) {
         *stopped_us = now;
     }
-    const bool waited = *stopped_us != 0 && (client->silent || now - *stopped_us > STOP_GRACE_US);
-    return waited || (client->silent && is_interrupted(client)) ? WH_STATUS_STOPPED : WH_OK;
+    const bool waited = *stopped_us != 0 && (client->silence.is_told || now - *stopped_us > STOP_GRACE_US);
+    return waited || (client->silence.is_told && is_interrupted(client)) ? WH_STATUS_STOPPED : WH_OK;
 }
 
 static int64_t longest_wait(const wh_protocol_client_t *client) {
@@ -354,7 +355,7 @@ static wh_status_t await_due_time(wh_protocol_client_t *client) {
     if (client->refusal != WH_OK || is_stopped(client)) {
         return client->refusal != WH_OK ? client->refusal : WH_STATUS_STOPPED;
     }
-    return client->asked_for_state || client->awaited || is_silent_for_long(client) ? hold(client) : WH_OK;
+    return client->restoring.is_asked || client->awaited || is_silent_for_long(client) ? hold(client) : WH_OK;
 }
 
 /* ------------------------------------------------------------------------------------ the slice interface */
@@ -381,14 +382,14 @@ static void write_outputs(wh_protocol_client_t *client) {
 
 /* Before the first answer the caller's state stays at its initial value. */
 static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status_t status) {
-    if (client->has_state) {
-        *state = client->state;
+    if (client->taken.is_there) {
+        *state = client->taken.state;
     }
-    state->events = client->events;
-    state->event_count = client->event_count;
-    client->events_delivered = client->event_count;
-    state->has_lost_events = client->has_lost_events;
-    client->has_lost_events = false;
+    state->events = client->heard.events;
+    state->event_count = client->heard.count;
+    client->heard.delivered = client->heard.count;
+    state->has_lost_events = client->heard.has_lost;
+    client->heard.has_lost = false;
     state->status = status;
 }
 
@@ -399,8 +400,8 @@ wh_status_t wh_protocol_client_resume(wh_protocol_client_t *client) {
     if (is_stopped(client)) {
         return WH_STATUS_STOPPED;
     }
-    if (client->timed_out) {
-        client->asked_us = 0; /* it may take its full time again */
+    if (client->silence.timed_out) {
+        client->silence.asked_us = 0; /* it may take its full time again */
     }
     client->node->interrupted = false;
     client->refusal = WH_OK;
@@ -418,19 +419,20 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     const bool free_running = is_free_running(client);
     client->node->interrupted = false;
     /* Events that came with a late state, after the last exchange, remain to be handed over. */
-    client->event_count -= client->events_delivered;
-    memmove(client->events, client->events + client->events_delivered,
-            client->event_count * sizeof *client->events);
-    client->events_delivered = 0;
+    client->heard.count -= client->heard.delivered;
+    memmove(client->heard.events, client->heard.events + client->heard.delivered,
+            client->heard.count * sizeof *client->heard.events);
+    client->heard.delivered = 0;
     if (is_stopped(client)) {
         hand_over(client, state, WH_STATUS_STOPPED);
         return WH_STATUS_STOPPED;
     }
     client->refusal = WH_OK;
-    client->asked_us = client->timed_out ? 0 : client->asked_us; /* it may take its full time again */
+    client->silence.asked_us =
+        client->silence.timed_out ? 0 : client->silence.asked_us; /* it may take its full time again */
     wh_link_command_to_message(command, &client->identity, !free_running, &client->command);
     client->answered = false;
-    client->asked_for_state = false;
+    client->restoring.is_asked = false;
     wh_protocol_client_note_sent(client);
     write_outputs(client);
     ++client->counters.sent;
@@ -448,13 +450,13 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
 }
 
 int64_t wh_protocol_client_reached(const wh_protocol_client_t *client) {
-    const int64_t answered = client->has_state ? client->state.seq : 0;
+    const int64_t answered = client->taken.is_there ? client->taken.state.seq : 0;
     return client->refusal == WH_OK ? client->command.seq : answered;
 }
 
 /* The slice whose state has not come yet; 0: none. */
 static int64_t owed_slice(const wh_protocol_client_t *client) {
-    const bool owed = client->refusal == WH_OK && client->state.seq != client->command.seq;
+    const bool owed = client->refusal == WH_OK && client->taken.state.seq != client->command.seq;
     return owed ? client->command.seq : 0;
 }
 
@@ -462,20 +464,21 @@ static int64_t owed_slice(const wh_protocol_client_t *client) {
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     const bool settled = wh_protocol_client_settle(client, is_stopped(client) ? STOP_GRACE_US : SETTLE_US);
-    if (!settled && client->has_state) {
+    if (!settled && client->taken.is_there) {
         wh_node_warn(client->node,
                      "the state of slice %" PRId64 " did not come: the hash is of slice %" PRId64,
-                     client->command.seq, client->state.seq);
+                     client->command.seq, client->taken.state.seq);
     } else if (!settled) {
         wh_node_warn(client->node, "no state has come: the run has no hash");
     }
-    return client->hash;
+    return client->taken.hash;
 }
 
 /* Slices at the end that no state tells of count as missed, because nobody has seen that they arrived. */
 static int64_t missed_slices(wh_link_t *link) {
     const wh_protocol_client_t *client = (wh_protocol_client_t *)link;
-    return client->missed + (client->options.rate > 0 ? client->command.seq - client->state.seq : 0);
+    return client->taken.missed +
+           (client->options.rate > 0 ? client->command.seq - client->taken.state.seq : 0);
 }
 
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client) {

@@ -57,6 +57,38 @@ typedef struct {
     uint64_t poses;
 } wh_protocol_client_sent_t;
 
+/* The last state that was taken. */
+typedef struct {
+    bool is_there;
+    wh_state_t state; /* status WH_OK */
+    wh_link_arrays_t arrays;
+    uint64_t hash;
+    int64_t missed; /* the simulator's count */
+} wh_protocol_client_taken_t;
+
+/* The events of all states since the last exchange. */
+typedef struct {
+    wh_event_t events[4 * WH_LINK_EVENTS];
+    size_t count, delivered;
+    bool has_lost; /* some were lost since */
+} wh_protocol_client_heard_t;
+
+/* A simulator that was started again asks for the last state, and gets it back. */
+typedef struct {
+    bool is_asked;
+    int most, count; /* times that one gets it; most 0: no limit */
+    int64_t told_us;
+    uint8_t bytes[WH_LINK_DATAGRAM]; /* of the last state */
+    size_t size;
+} wh_protocol_client_restoring_t;
+
+/* How long nothing has been heard. */
+typedef struct {
+    int64_t asked_us; /* time of the first command since then; 0: no answer is owed */
+    bool is_told;
+    bool timed_out; /* an exchange waited longer than it may, and nothing was heard since */
+} wh_protocol_client_silence_t;
+
 /* Only client*.c write it. It must not be moved once opened. */
 typedef struct {
     wh_link_t link; /* first: the MCS talks to &client->link */
@@ -65,33 +97,24 @@ typedef struct {
     wh_protocol_client_options_t options;
     wh_link_identity_t identity;
     waferhand_command command;    /* the last command sent */
-    wh_state_t state;             /* the last state taken; status WH_OK */
     int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
     bool pending;                 /* the last exchange ended before its answer came */
     bool awaited;                 /* the next exchange waits for its state, also in a free run */
-    bool has_state, answered, asked_for_state;
+    bool answered;
     wh_status_t refusal;        /* the reason why the last command was not stepped */
     uint64_t other_layout_hash; /* the simulator's hash, with WH_STATUS_OTHER_LAYOUT */
-    int64_t missed;             /* the simulator's count */
-    uint64_t hash;              /* of the last state */
     int64_t resend_us;          /* the wait before sending again */
-    int64_t asked_us; /* time of the first command since which nothing was heard; 0: no answer is owed */
-    int64_t start_us, last_tick_us, restored_us;
-    bool silent;
-    int restores_most, restores; /* times that a simulator that asks gets the state back; 0: no limit */
-    bool timed_out;              /* an exchange waited longer than it may, and nothing was heard since */
-    wh_senders_t senders;        /* of states: the simulators */
-    uint64_t own;                /* our own sender; 0: not known yet */
+    int64_t start_us, last_tick_us;
+    wh_protocol_client_taken_t taken;
+    wh_protocol_client_heard_t heard;
+    wh_protocol_client_restoring_t restoring;
+    wh_protocol_client_silence_t silence;
+    wh_senders_t senders;                    /* of states: the simulators */
+    uint64_t own;                            /* our own sender; 0: not known yet */
     char disturbance[WH_CLIENT_DISTURBANCE]; /* the other sender of commands, in words; empty: none */
     wh_protocol_client_sent_t sent[WH_CLIENT_SENT];
     wh_protocol_client_counters_t counters;
-    wh_link_arrays_t arrays;
     wh_link_arrays_t spare;
-    wh_event_t events[4 * WH_LINK_EVENTS]; /* the events of all states since the last exchange */
-    size_t event_count, events_delivered;
-    bool has_lost_events;              /* events were lost since the last exchange */
-    uint8_t restore[WH_LINK_DATAGRAM]; /* the bytes of the last state, to be sent back */
-    size_t restore_size;
 } wh_protocol_client_t;
 
 /* Subscribes to the states and begins a run with a random number other than 0. `layout` and `node` must

@@ -13,12 +13,12 @@
 
 size_t wh_protocol_client_save(wh_protocol_client_t *client, uint8_t bytes[]) {
     const bool has_begun = client->command.seq > 0;
-    if (has_begun && (!wh_protocol_client_settle(client, SETTLE_US) || !client->has_state)) {
+    if (has_begun && (!wh_protocol_client_settle(client, SETTLE_US) || !client->taken.is_there)) {
         return 0;
     }
     memcpy(bytes, &client->command, sizeof client->command);
-    memcpy(bytes + sizeof client->command, client->restore, client->restore_size);
-    return sizeof client->command + client->restore_size;
+    memcpy(bytes + sizeof client->command, client->restoring.bytes, client->restoring.size);
+    return sizeof client->command + client->restoring.size;
 }
 
 /* The client takes the state as if it came now, in its new run. */
@@ -36,27 +36,27 @@ static bool take_again(wh_protocol_client_t *client, const uint8_t bytes[], size
     }
     wh_link_seal(encoded, (size_t)length);
     wh_protocol_client_hear(client, encoded, (size_t)length);
-    return client->has_state;
+    return client->taken.is_there;
 }
 
 /* The taken state is no news, because the simulator has yet to get it. */
 static wh_status_t hand_over(wh_protocol_client_t *client) {
-    client->event_count = 0;
-    client->has_lost_events = false;
-    client->events_delivered = 0;
+    client->heard.count = 0;
+    client->heard.has_lost = false;
+    client->heard.delivered = 0;
     client->answered = false;
     client->pending = true;
-    client->restores = 0;
-    client->restores_most = RESTORES_MOST;
+    client->restoring.count = 0;
+    client->restoring.most = RESTORES_MOST;
     const wh_status_t status = wh_protocol_client_resume(client);
-    client->restores_most = 0;
+    client->restoring.most = 0;
     return status;
 }
 
 static wh_status_t begin_there(wh_protocol_client_t *client, const uint8_t bytes[], size_t size) {
-    const int64_t asked_us = client->asked_us;
+    const int64_t asked_us = client->silence.asked_us;
     wh_protocol_client_begin(client, client->layout);
-    client->asked_us = asked_us;
+    client->silence.asked_us = asked_us;
     const int64_t run = client->identity.run;
     if (size == sizeof client->command) {
         return WH_OK; /* before the first slice the run is at its beginning */
@@ -77,8 +77,8 @@ wh_status_t wh_protocol_client_restore(wh_protocol_client_t *client, const uint8
         const wh_protocol_client_counters_t counters = client->counters;
         *client = *before;
         client->counters = counters;
-    } else if (client->has_state) {
-        *state = client->state;
+    } else if (client->taken.is_there) {
+        *state = client->taken.state;
         state->event_count = 0;
     }
     free(before);

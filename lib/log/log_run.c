@@ -12,15 +12,15 @@
 /* -------------------------------------------------------------------------------------------------- texts */
 
 __attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const char *format, ...) {
-    if (run->note_count == WH_LOG_NOTES) {
+    if (run->notes.count == WH_LOG_NOTES) {
         return;
     }
-    char *text = run->text[run->note_count];
+    char *text = run->notes.room[run->notes.count];
     va_list values;
     va_start(values, format);
-    (void)vsnprintf(text, sizeof run->text[0], format, values);
+    (void)vsnprintf(text, sizeof run->notes.room[0], format, values);
     va_end(values);
-    run->notes[run->note_count++] = text;
+    run->notes.texts[run->notes.count++] = text;
 }
 
 /* Writes why there is nothing to show: the file, then the reason. */
@@ -110,7 +110,7 @@ static void judge_log(wh_log_run_t *run) {
                           .id = (uint64_t)recording->id,
                           .part = recording->first_part > 1 ? recording->first_part : recording->part,
                           .is_part = wh_log_run_is_part(run),
-                          .notes = run->notes};
+                          .notes = run->notes.texts};
     run->record.log = &run->worth;
     run->record.is_partial = verdict != WH_READING_SAME;
 }
@@ -135,10 +135,10 @@ static void follow(wh_log_run_t *run, const wh_log_files_t *files) {
         run->collision.layout = layout;
         wh_links_home(&run->collision.links, layout);
     }
-    run->replay.only_run = run->run_count > 1 ? run->wanted->run : 0;
-    run->replay.listener = wh_log_run_on_state;
-    run->replay.stepped = wh_log_run_on_stepped;
-    run->replay.user = run;
+    run->replay.given.only_run = run->run_count > 1 ? run->wanted->run : 0;
+    run->replay.given.listener = wh_log_run_on_state;
+    run->replay.given.stepped = wh_log_run_on_stepped;
+    run->replay.given.user = run;
     wh_reading_replay(files, &run->log, &run->replay, &run->reading);
     if (run->run_count == 1) {
         judge_log(run);
@@ -158,14 +158,16 @@ static bool begins_late(const wh_log_run_t *run) {
 
 /* True if the rest is in the next part. */
 static bool ends_early(const wh_log_run_t *run) {
-    return run->replay.run && !run->replay.run->over && run->replay.recording.closed == WH_RECORDING_GOES_ON;
+    return run->replay.run && !run->replay.run->over.is_told &&
+           run->replay.recording.closed == WH_RECORDING_GOES_ON;
 }
 
 /* A run is ok only if the log says so, and nothing of the log is missing. */
 static void settle_verdict(wh_log_run_t *run) {
-    if (run->outcome.verdict == WH_OUTCOME_FAILED) {
+    if (run->told.outcome.verdict == WH_OUTCOME_FAILED) {
         run->record.ok = false;
-    } else if ((run->outcome.verdict != WH_OUTCOME_PASSED || !is_sound_log(run) || wh_log_run_is_part(run)) &&
+    } else if ((run->told.outcome.verdict != WH_OUTCOME_PASSED || !is_sound_log(run) ||
+                wh_log_run_is_part(run)) &&
                run->record.ok) {
         run->record.ok = false;
         run->record.is_untold = true;
@@ -173,12 +175,14 @@ static void settle_verdict(wh_log_run_t *run) {
 }
 
 static void finish_run(wh_log_run_t *run) {
-    const wh_recorder_end_t end = {run->state.wafers, run->hash, run->missed, run->collision.world};
+    const wh_recorder_end_t end = {run->state.wafers, run->taken.hash, run->taken.missed,
+                                   run->collision.world};
     for (size_t i = 0; i < run->lane_count; ++i) {
         run->record.commands[run->lanes[i].running].end_s = wh_recorder_now(&run->recorder);
     }
     wh_log_run_judge(run);
-    run->record.is_partial = run->record.is_partial || begins_late(run) || ends_early(run) || run->gaps > 0;
+    run->record.is_partial =
+        run->record.is_partial || begins_late(run) || ends_early(run) || run->taken.gaps > 0;
     wh_recorder_finish(&run->recorder, &end);
     run->record.wall_s = (double)NAN;
     if (run->record.unlooked && run->cell.collision != WH_LINK_NO_COLLISION) {
@@ -195,7 +199,7 @@ static void note_lost(wh_log_run_t *run, const char *what, int64_t told, size_t 
 }
 
 static void note_outcome(wh_log_run_t *run) {
-    const wh_run_told_t *outcome = &run->outcome;
+    const wh_run_told_t *outcome = &run->told.outcome;
     if (outcome->verdict == WH_OUTCOME_UNTOLD) {
         note(run, "The log does not tell if the run passed.");
         return;
@@ -229,7 +233,7 @@ static void note_worth(wh_log_run_t *run) {
 static void note_reading(wh_log_run_t *run) {
     const wh_reading_t *reading = &run->reading;
     const wh_replay_run_t *replayed = run->replay.run;
-    if (replayed && replayed->differing > 0) {
+    if (replayed && replayed->slices.differing > 0) {
         note(run, "Not as a replay has it, first at slice %" PRId64 ": `waferhand replay` says more.",
              replayed->difference.slice);
     }
@@ -243,7 +247,7 @@ static void note_reading(wh_log_run_t *run) {
 }
 
 static void note_files(wh_log_run_t *run) {
-    const size_t unclosed = run->replay.open_files;
+    const size_t unclosed = run->replay.files.open_files;
     if (run->options.then_count > 0) {
         note(run, "Read as one log: this file and %zu that %s it.", run->file_count - 1,
              run->file_count == 2 ? "follows" : "follow");
@@ -262,13 +266,13 @@ static void tell(wh_log_run_t *run) {
         note(run, "Shapes are the defaults of 300 mm wafers, and wafers per hour are not counted: %.140s.",
              run->cell.note);
     }
-    if (run->gaps > 0) {
-        note(run, "%zu %s of slices %s not in the log: %" PRId64 " slices in all.", run->gaps,
-             run->gaps == 1 ? "stretch" : "stretches", run->gaps == 1 ? "is" : "are",
-             run->replay.run->skipped);
+    if (run->taken.gaps > 0) {
+        note(run, "%zu %s of slices %s not in the log: %" PRId64 " slices in all.", run->taken.gaps,
+             run->taken.gaps == 1 ? "stretch" : "stretches", run->taken.gaps == 1 ? "is" : "are",
+             run->replay.run->slices.skipped);
     }
     note_reading(run);
-    run->worth.note_count = run->note_count;
+    run->worth.note_count = run->notes.count;
 }
 
 /* Makes the first pass over the log, for the runs with slices and the messages. Chooses the run; false if
@@ -289,7 +293,7 @@ static bool choose(wh_log_run_t *run, const wh_log_files_t *files) {
     }
     if (run->run_count == 0) {
         return refuse(run, "no slice of a run in it, in %" PRIu64 " events: nothing to show%s", events,
-                      run->told_count > 0 ? "; `waferhand replay` tells what is there" : "");
+                      run->told.count > 0 ? "; `waferhand replay` tells what is there" : "");
     }
     if (run->options.number > run->run_count) {
         return refuse(run, "no run %zu in it (expected 1 to %zu)", run->options.number, run->run_count);
@@ -328,7 +332,7 @@ static bool read_runs(wh_log_run_t *run, const wh_log_files_t *files) {
     if (wh_reading_is_unknown(&run->replay)) {
         return refuse_version(run, run->replay.recording.version);
     }
-    return run->has_slices ||
+    return run->taken.is_any ||
            refuse(run, "no sound slice of this run in it, in %" PRIu64 " events", run->reading.events);
 }
 
@@ -355,12 +359,12 @@ void wh_log_run_close(wh_log_run_t *run) {
     wh_told_layout_free(&run->cell);
     wh_replay_close(&run->replay);
     wh_log_close(&run->log);
-    for (size_t i = 0; i < run->told_count; ++i) {
-        (void)waferhand_mcs_decode_cleanup(&run->told[i].message);
+    for (size_t i = 0; i < run->told.count; ++i) {
+        (void)waferhand_mcs_decode_cleanup(&run->told.items[i].message);
     }
-    free(run->told);
+    free(run->told.items);
     free(run->runs);
-    run->told = NULL;
+    run->told.items = NULL;
     run->runs = NULL;
-    run->told_count = 0;
+    run->told.count = 0;
 }

@@ -51,6 +51,39 @@ typedef struct {
     size_t order; /* in the log */
 } wh_log_told_t;
 
+/* Messages of motion control, sorted by their slices, and how the run ended by them. */
+typedef struct {
+    wh_log_told_t *items;
+    size_t count, capacity, next;
+    wh_run_told_t outcome;
+    int32_t last_expectation, last_cycle, last_station; /* the highest numbers in them */
+} wh_log_told_list_t;
+
+/* The slices that were taken. */
+typedef struct {
+    bool is_any;
+    int64_t seq; /* of the last one */
+    uint64_t hash;
+    int64_t missed;
+    size_t gaps;           /* the number of stretches of slices that are not in the log */
+    wh_command_t last;     /* the last one: its number, axes and valves */
+    bool has_opened_valve; /* in the running command, since an axis other than Z moved */
+} wh_log_taken_t;
+
+/* Passes through beams of the grippers that had a wafer when beams were last armed. */
+typedef struct {
+    wh_pass_t of[WH_GRIPPERS];
+    bool are_any;    /* there may be some */
+    uint32_t number; /* of that arming */
+} wh_log_passes_t;
+
+/* Notes, in words. */
+typedef struct {
+    char room[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
+    const char *texts[WH_LOG_NOTES];
+    size_t count;
+} wh_log_notes_t;
+
 /* Zero it at first, or leave it static; must not be moved. Read record, signals, notes, worth and message. */
 typedef struct {
     wh_log_run_options_t options;
@@ -61,8 +94,7 @@ typedef struct {
     wh_link_identity_t *runs;
     size_t run_count, run_capacity;
     const wh_link_identity_t *wanted;
-    wh_log_told_t *told; /* sorted by their slices */
-    size_t told_count, told_capacity, told_next;
+    wh_log_told_list_t told;
     wh_told_layout_t cell;
     wh_recorder_t recorder;
     wh_record_t record;
@@ -70,23 +102,11 @@ typedef struct {
     wh_collision_t collision;
     wh_signals_t signals;
     wh_link_arrays_t arrays;
-    bool has_slices; /* one was taken */
-    int64_t seq;     /* of the last slice */
-    uint64_t hash;
-    int64_t missed;
-    size_t gaps;                            /* the number of stretches of slices that are not in the log */
-    wh_command_t last;                      /* the last slice: its number, axes and valves */
-    bool has_opened_valve;                  /* in the running command, since an axis other than Z moved */
+    wh_log_taken_t taken;
     wh_log_lane_t lanes[WH_RECORDER_PARTS]; /* once there are tasks, in the order of their first messages */
     size_t lane_count;
-    wh_pass_t passes[WH_GRIPPERS]; /* of the grippers that had a wafer when beams were last armed */
-    bool has_passes;               /* there may be some */
-    uint32_t pass_number;          /* of that arming */
-    wh_run_told_t outcome;
-    int32_t last_expectation, last_cycle, last_station; /* the highest numbers in the messages */
-    char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
-    const char *notes[WH_LOG_NOTES];
-    size_t note_count;
+    wh_log_passes_t passes;
+    wh_log_notes_t notes;
     char reason[WH_READING_REASON]; /* the reason of the log's verdict */
     wh_record_log_t worth;          /* the record's `log` */
     char message[1200];             /* the reason why there is nothing to show */
@@ -101,7 +121,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 /* The end of the last slice of a run that was read, s. */
 static inline double wh_log_run_end(const wh_log_run_t *run) {
-    return (double)(run->seq * run->cell.layout->slice_us) / 1e6;
+    return (double)(run->taken.seq * run->cell.layout->slice_us) / 1e6;
 }
 
 /* True if the first or the last part of a recording in parts was not read. */

@@ -47,7 +47,7 @@ void wh_log_run_set_parts(wh_log_run_t *run) {
 static wh_share_t share_standing(const wh_log_run_t *run, const wh_log_lane_t *lane) {
     const wh_state_t *state = &run->state;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        const bool switches = state->physics->told[g] != run->last.grippers[g].valve;
+        const bool switches = state->physics->told[g] != run->taken.last.grippers[g].valve;
         if (switches && (lane->grippers >> g & 1U) != 0) {
             return WH_SHARE_HANDOVER;
         }

@@ -31,11 +31,11 @@ static bool are_sound(const wh_latches_t *latches, int64_t seq) {
 }
 
 static void drop(wh_log_run_t *run) {
-    for (size_t g = 0; run->has_passes && g < WH_GRIPPERS; ++g) {
-        wh_pass_free(&run->passes[g]);
-        memset(&run->passes[g], 0, sizeof run->passes[g]);
+    for (size_t g = 0; run->passes.are_any && g < WH_GRIPPERS; ++g) {
+        wh_pass_free(&run->passes.of[g]);
+        memset(&run->passes.of[g], 0, sizeof run->passes.of[g]);
     }
-    run->has_passes = false;
+    run->passes.are_any = false;
 }
 
 /* A log does not tell the gripper of a pass: it may be any gripper on a robot that has a wafer. */
@@ -45,25 +45,25 @@ static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
         const bool is_on_robot = layout->machine.mounts[g].axis == WH_NONE;
         if (is_on_robot && run->state.grippers[g].wafer != WH_NONE) {
             const int32_t station = layout->beams[latches->first].station;
-            run->has_passes = true;
-            run->passes[g] = (wh_pass_t){.order = {WH_LATCH_ARM, latches->first, latches->count},
-                                         .station = station,
-                                         .gripper = (int32_t)g,
-                                         .believed = wh_pass_station(layout, station, (int32_t)g),
-                                         .number = latches->number,
-                                         .before = latches->number - 1,
-                                         .seq = run->state.seq,
-                                         .armed_seq = run->state.seq - latches->slice,
-                                         .goes_on = true};
+            run->passes.are_any = true;
+            run->passes.of[g] = (wh_pass_t){.order = {WH_LATCH_ARM, latches->first, latches->count},
+                                            .station = station,
+                                            .gripper = (int32_t)g,
+                                            .believed = wh_pass_station(layout, station, (int32_t)g),
+                                            .number = latches->number,
+                                            .before = latches->number - 1,
+                                            .seq = run->state.seq,
+                                            .armed_seq = run->state.seq - latches->slice,
+                                            .goes_on = true};
         }
     }
 }
 
 static void hear(wh_log_run_t *run) {
-    for (size_t g = 0; run->has_passes && g < run->state.gripper_count; ++g) {
-        if (run->passes[g].goes_on) {
-            wh_pass_stand(&run->passes[g], run->state.seq, &run->state.grippers[g].base_from_gripper);
-            wh_pass_hear(&run->passes[g], &run->state);
+    for (size_t g = 0; run->passes.are_any && g < run->state.gripper_count; ++g) {
+        if (run->passes.of[g].goes_on) {
+            wh_pass_stand(&run->passes.of[g], run->state.seq, &run->state.grippers[g].base_from_gripper);
+            wh_pass_hear(&run->passes.of[g], &run->state);
         }
     }
 }
@@ -86,7 +86,7 @@ static const wh_pass_t *find_pass(const wh_log_run_t *run) {
     const wh_pass_t *found = NULL;
     double least = 2 * FARTHEST;
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        const wh_pass_t *pass = &run->passes[g];
+        const wh_pass_t *pass = &run->passes.of[g];
         const double distance = pass->goes_on ? distance_of(pass, run->cell.layout) : least;
         if (distance < least) {
             least = distance;
@@ -125,7 +125,7 @@ static void estimate(wh_log_run_t *run) {
 
 void wh_log_run_hear_passes(wh_log_run_t *run) {
     const wh_latches_t *latches = &run->state.physics->latches;
-    const bool is_same = latches->number == run->pass_number;
+    const bool is_same = latches->number == run->passes.number;
     const bool sound = are_sound(latches, run->state.seq);
     if (is_same && sound && !latches->armed) {
         estimate(run);
@@ -136,7 +136,7 @@ void wh_log_run_hear_passes(wh_log_run_t *run) {
     if (!is_same && sound && latches->armed) {
         begin(run, latches);
     }
-    run->pass_number = latches->number;
+    run->passes.number = latches->number;
     hear(run);
 }
 

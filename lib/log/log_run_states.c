@@ -9,23 +9,23 @@
 /* The reason why the robot stood still in a slice, as far as valves tell. */
 static wh_share_t share_standing(const wh_log_run_t *run, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        if (state->physics->told[g] != run->last.grippers[g].valve) {
+        if (state->physics->told[g] != run->taken.last.grippers[g].valve) {
             return WH_SHARE_HANDOVER;
         }
     }
-    return run->has_opened_valve ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
+    return run->taken.has_opened_valve ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
 }
 
 bool wh_log_run_begins_wait(const wh_log_run_t *run, size_t g) {
-    return run->state.physics->told[g] != run->last.grippers[g].valve;
+    return run->state.physics->told[g] != run->taken.last.grippers[g].valve;
 }
 
 static void note_valves(wh_log_run_t *run, const wh_state_t *state, const bool moving[WH_AXES]) {
     const bool carried = moving[WH_AXIS_THETA] || moving[WH_AXIS_R] || moving[WH_AXIS_YAW];
-    run->has_opened_valve = run->has_opened_valve && !carried;
+    run->taken.has_opened_valve = run->taken.has_opened_valve && !carried;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        run->has_opened_valve = run->has_opened_valve || wh_log_run_begins_wait(run, g);
-        run->last.grippers[g].valve = state->physics->told[g];
+        run->taken.has_opened_valve = run->taken.has_opened_valve || wh_log_run_begins_wait(run, g);
+        run->taken.last.grippers[g].valve = state->physics->told[g];
     }
 }
 
@@ -33,16 +33,16 @@ static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
     const wh_state_t *state = &run->state;
     bool moving[WH_AXES];
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        moving[axis] = wh_real_abs(axes[axis] - run->last.axes[axis]) > 0;
+        moving[axis] = wh_real_abs(axes[axis] - run->taken.last.axes[axis]) > 0;
     }
     run->recorder.task = wh_activity_motion(&run->cell.layout->machine, moving, share_standing(run, state));
     if (run->record.has_tasks) {
         wh_log_run_count_parts(run, moving);
     }
     note_valves(run, state, moving);
-    run->last.seq = seq;
-    memcpy(run->last.axes, axes, sizeof run->last.axes);
-    wh_recorder_slice(&run->recorder, &run->last, state);
+    run->taken.last.seq = seq;
+    memcpy(run->taken.last.axes, axes, sizeof run->taken.last.axes);
+    wh_recorder_slice(&run->recorder, &run->taken.last, state);
 }
 
 static void start(wh_log_run_t *run, bool from_the_beginning) {
@@ -50,10 +50,10 @@ static void start(wh_log_run_t *run, bool from_the_beginning) {
     if (!run->options.only_slices) {
         wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
     }
-    memset(&run->last, 0, sizeof run->last);
-    wh_machine_home(machine, run->last.axes);
+    memset(&run->taken.last, 0, sizeof run->taken.last);
+    wh_machine_home(machine, run->taken.last.axes);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        run->last.grippers[g].valve = WH_VALVE_CLOSED;
+        run->taken.last.grippers[g].valve = WH_VALVE_CLOSED;
     }
 }
 
@@ -64,7 +64,7 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_command *command,
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
         known = wh_real_abs(command->axis_position[axis]) < FARTHEST;
     }
-    memcpy(axes, run->last.axes, sizeof run->last.axes);
+    memcpy(axes, run->taken.last.axes, sizeof run->taken.last.axes);
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
         axes[axis] = command->axis_position[axis];
     }
@@ -73,10 +73,10 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_command *command,
 
 /* Takes the slice's numbers. Slices that never reached the simulator are in no log. */
 static void count_gap(wh_log_run_t *run, int64_t seq, int64_t missed) {
-    const int64_t more = missed - run->missed;
-    run->gaps += run->seq > 0 && seq - run->seq - 1 > more ? 1 : 0;
-    run->seq = seq;
-    run->missed = missed;
+    const int64_t more = missed - run->taken.missed;
+    run->taken.gaps += run->taken.seq > 0 && seq - run->taken.seq - 1 > more ? 1 : 0;
+    run->taken.seq = seq;
+    run->taken.missed = missed;
 }
 
 /* Adds the slice to the record and the signals; the axes that are known are `count`. */
@@ -94,20 +94,20 @@ static void record_slice(wh_log_run_t *run, int64_t seq, const double axes[], si
 static void take_slice(wh_log_run_t *run, const waferhand_command *command, int64_t missed, uint64_t hash) {
     const int64_t seq = run->state.seq;
     double axes[WH_AXES];
-    if (!run->has_slices) {
-        run->has_slices = true;
+    if (!run->taken.is_any) {
+        run->taken.is_any = true;
         start(run, seq == 1);
     }
     const bool known = find_axes(run, command, axes);
     const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
     count_gap(run, seq, missed);
-    run->hash = hash;
+    run->taken.hash = hash;
     if (!run->options.only_slices) {
         record_slice(run, seq, axes, known ? (size_t)command->axis_count : 0);
     }
     if (run->options.listener) {
         run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &run->state,
-                              run->hash);
+                              run->taken.hash);
     }
 }
 

@@ -15,7 +15,7 @@ static bool is_running(const wh_log_run_t *run, const waferhand_mcs *told) {
 }
 
 static void mark(wh_log_run_t *run) {
-    run->has_opened_valve = false;
+    run->taken.has_opened_valve = false;
     if (run->signals.layout && run->signals.last > 0) {
         wh_signals_mark(&run->signals);
     }
@@ -32,13 +32,13 @@ static void take_end(wh_log_run_t *run, const waferhand_mcs *told) {
 /* False for a repeated message, as over a lossy network: its number is known. */
 static bool is_new(wh_log_run_t *run, const waferhand_mcs *told) {
     const bool is_cycle = told->phase == WH_LINK_PHASE_CYCLE;
-    int32_t *last = is_cycle ? &run->last_cycle : &run->last_expectation;
+    int32_t *last = is_cycle ? &run->told.last_cycle : &run->told.last_expectation;
     if (told->error > *last) {
         *last = told->error;
         return true;
     }
-    for (size_t i = 0; &run->told[i].message < told; ++i) {
-        const waferhand_mcs *before = &run->told[i].message;
+    for (size_t i = 0; &run->told.items[i].message < told; ++i) {
+        const waferhand_mcs *before = &run->told.items[i].message;
         if (before->phase >= WH_LINK_PHASE_MET && (before->phase == WH_LINK_PHASE_CYCLE) == is_cycle &&
             before->error == told->error) {
             return false;
@@ -94,9 +94,9 @@ static bool take_command(wh_log_run_t *run, const waferhand_mcs *told) {
 static void take_station(wh_log_run_t *run, const waferhand_mcs *told) {
     const wh_layout_t *layout = run->cell.layout;
     wh_station_event_record_t event;
-    if (told->error > run->last_station &&
+    if (told->error > run->told.last_station &&
         wh_station_told_read(told->text, layout->station_count, layout->wafer_count, &event)) {
-        run->last_station = told->error;
+        run->told.last_station = told->error;
         wh_record_add_station_event(&run->record, &event);
     }
 }
@@ -126,8 +126,8 @@ static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
 }
 
 void wh_log_run_take_told_before(wh_log_run_t *run, int64_t seq) {
-    while (run->told_next < run->told_count && run->told[run->told_next].message.seq < seq) {
-        take_told(run, &run->told[run->told_next++].message);
+    while (run->told.next < run->told.count && run->told.items[run->told.next].message.seq < seq) {
+        take_told(run, &run->told.items[run->told.next++].message);
     }
 }
 
@@ -137,9 +137,10 @@ void wh_log_run_add_told(wh_log_run_t *run, waferhand_mcs *message) {
         (void)waferhand_mcs_decode_cleanup(message);
         return;
     }
-    run->told = wh_array_grow(run->told, run->told_count, &run->told_capacity, sizeof *run->told);
-    run->told[run->told_count] = (wh_log_told_t){*message, run->told_count};
-    ++run->told_count;
+    run->told.items =
+        wh_array_grow(run->told.items, run->told.count, &run->told.capacity, sizeof *run->told.items);
+    run->told.items[run->told.count] = (wh_log_told_t){*message, run->told.count};
+    ++run->told.count;
 }
 
 static int compare(const void *a, const void *b) {
@@ -153,27 +154,27 @@ static int compare(const void *a, const void *b) {
 
 void wh_log_run_choose_told(wh_log_run_t *run) {
     size_t kept = 0;
-    for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].message.run == run->wanted->run) {
-            run->told[kept++] = run->told[i];
+    for (size_t i = 0; i < run->told.count; ++i) {
+        if (run->told.items[i].message.run == run->wanted->run) {
+            run->told.items[kept++] = run->told.items[i];
         } else {
-            (void)waferhand_mcs_decode_cleanup(&run->told[i].message);
+            (void)waferhand_mcs_decode_cleanup(&run->told.items[i].message);
         }
     }
-    run->told_count = kept;
+    run->told.count = kept;
     if (kept > 0) {
-        qsort(run->told, kept, sizeof *run->told, compare);
+        qsort(run->told.items, kept, sizeof *run->told.items, compare);
     }
 }
 
 void wh_log_run_judge(wh_log_run_t *run) {
     const char *reason = NULL;
-    for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].message.phase == WH_LINK_PHASE_OVER) {
-            reason = wh_outcome_read(run->told[i].message.text, &run->outcome);
+    for (size_t i = 0; i < run->told.count; ++i) {
+        if (run->told.items[i].message.phase == WH_LINK_PHASE_OVER) {
+            reason = wh_outcome_read(run->told.items[i].message.text, &run->told.outcome);
         }
     }
-    if (run->outcome.verdict == WH_OUTCOME_FAILED && reason && reason[0] != '\0') {
+    if (run->told.outcome.verdict == WH_OUTCOME_FAILED && reason && reason[0] != '\0') {
         run->record.failure = wh_text_copy(reason);
     }
 }

@@ -36,13 +36,13 @@ static void look_ahead(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *
             wh_replay_event(replay, log->channel, log->data, log->size);
         }
     }
-    replay->messages = replay->events = replay->digest = 0;
-    memset(replay->losses, 0, sizeof replay->losses);
+    replay->heard.messages = replay->heard.events = replay->heard.digest = 0;
+    memset(replay->heard.losses, 0, sizeof replay->heard.losses);
     for (size_t i = 0; i < replay->cell_count; ++i) {
         replay->cells[i].is_sure = false;
         replay->cells[i].times = 0;
     }
-    replay->unknown_run = 0;
+    replay->heard.unknown_run = 0;
 }
 
 /* Keeps the place if there is room for it, and counts it in any case. */
@@ -72,13 +72,13 @@ static bool is_of_slices(const char *channel) {
 
 /* Returns true if it is of slices, and sound. */
 static bool take_event(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *replay) {
-    const uint64_t messages = replay->messages;
+    const uint64_t messages = replay->heard.messages;
     wh_log_numbers_take(&reading->numbers, log->number, log->offset);
-    replay->at = log->offset;
-    replay->file = log->file;
-    replay->is_loose = log->is_loose;
+    replay->place.at = log->offset;
+    replay->place.file = log->file;
+    replay->place.is_loose = log->is_loose;
     wh_replay_event(replay, log->channel, log->data, log->size);
-    return replay->messages > messages && is_of_slices(log->channel);
+    return replay->heard.messages > messages && is_of_slices(log->channel);
 }
 
 /* True if the file is a part of a recording whose next part is the next file. */
@@ -157,13 +157,13 @@ bool wh_reading_is_doubtful(const wh_replay_t *replay, const wh_replay_run_t *ru
 }
 
 bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run) {
-    return !run->over && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
+    return !run->over.is_told && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
 }
 
 int64_t wh_reading_lost_expectations(const wh_replay_run_t *run) {
     const wh_log_numbers_t *there = &run->expectations;
     uint64_t missing = wh_log_numbers_missing(there);
-    if (run->told.verdict == WH_OUTCOME_UNTOLD) {
+    if (run->over.outcome.verdict == WH_OUTCOME_UNTOLD) {
         return 0;
     }
     if (run->begins_in_part && there->next == 0) {
@@ -172,14 +172,14 @@ int64_t wh_reading_lost_expectations(const wh_replay_run_t *run) {
     for (size_t i = 0; run->begins_in_part && i < there->gap_count; ++i) {
         missing -= there->gaps[i].from == 0 ? there->gaps[i].to : 0;
     }
-    return run->told.expectations - (int64_t)(there->next - missing);
+    return run->over.outcome.expectations - (int64_t)(there->next - missing);
 }
 
 /* A command that was refused, for its layout or another reason, has no slice. */
 int64_t wh_reading_lost_end(const wh_replay_run_t *run) {
     const int64_t reached = run->last_refused > run->reached ? run->last_refused : run->reached;
-    const bool is_told = run->over && !run->is_other_layout && run->homeless == 0;
-    return is_told && run->over_seq > reached ? run->over_seq - reached : 0;
+    const bool is_told = run->over.is_told && !run->homeless.is_other_layout && run->homeless.count == 0;
+    return is_told && run->over.seq > reached ? run->over.seq - reached : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ judging */
@@ -207,7 +207,7 @@ static bool are_numbers_odd(const wh_log_numbers_t *numbers, char *reason) {
 }
 
 static bool is_lost(const wh_replay_t *replay, wh_replay_loss_t loss, char *reason) {
-    const wh_replay_count_t *lost = &replay->losses[loss];
+    const wh_replay_count_t *lost = &replay->heard.losses[loss];
     const wh_reading_loss_t *words = &wh_reading_losses[loss];
     return lost->count > 0 && because(reason, "%" PRIu64 " %s, the first at byte %" PRIu64, lost->count,
                                       lost->count == 1 ? words->one : words->many, lost->first);
@@ -222,7 +222,7 @@ static bool has_strange_messages(const wh_replay_t *replay, char *reason) {
 static bool has_doubtful_slices(const wh_replay_t *replay, char *reason) {
     int64_t doubtful = 0;
     for (size_t i = 0; i < replay->run_count; ++i) {
-        doubtful += replay->runs[i].doubtful;
+        doubtful += replay->runs[i].slices.doubtful;
     }
     return count_because(reason, (uint64_t)doubtful, "slice is doubtful", "slices are doubtful");
 }
@@ -252,15 +252,15 @@ static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *readi
 static bool is_run_whole(const wh_replay_t *replay, const wh_replay_run_t *run, char *reason) {
     const int64_t lost = wh_reading_lost_expectations(run);
     const int64_t unanswered =
-        run->unanswered + (wh_reading_lacks_end(replay, run) ? 0 : run->last_unanswered);
+        run->slices.unanswered + (wh_reading_lacks_end(replay, run) ? 0 : run->slices.last_unanswered);
     if (lost < 0) {
         return !because(reason, "more expectations are in the log than the run had");
     }
     return !count_because(reason, (uint64_t)wh_reading_lost_end(run), "slice before the run's end is missing",
                           "slices before the run's end are missing") &&
-           !count_because(reason, (uint64_t)run->skipped, "slice was passed over",
+           !count_because(reason, (uint64_t)run->slices.skipped, "slice was passed over",
                           "slices were passed over") &&
-           !count_because(reason, (uint64_t)run->taken_up, "state was taken over as recorded",
+           !count_because(reason, (uint64_t)run->slices.taken_up, "state was taken over as recorded",
                           "states were taken over as recorded") &&
            !count_because(reason, (uint64_t)unanswered, "command has no state", "commands have no states") &&
            !count_because(reason, (uint64_t)lost, "expectation is not in the log",
@@ -279,13 +279,15 @@ static bool is_something_missing(const wh_replay_t *replay, char *reason) {
             return true;
         }
     }
-    return count_because(reason, replay->proximities, "proximity could not be compared",
+    return count_because(reason, replay->heard.proximities, "proximity could not be compared",
                          "proximities could not be compared");
 }
 
 /* A part of the recording that should follow, and was not read; 0: none. */
 static int32_t find_lost_part(const wh_replay_t *replay, const wh_reading_t *reading) {
-    return replay->lost_part > 0 ? replay->lost_part : reading->is_alone ? 0 : replay->awaited_part;
+    return replay->files.lost_part > 0 ? replay->files.lost_part
+           : reading->is_alone         ? 0
+                                       : replay->files.awaited_part;
 }
 
 static bool lacks_part(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
@@ -300,7 +302,7 @@ static bool is_run_left(const wh_replay_t *replay, const wh_reading_t *reading, 
     bool left = reading->is_begun_and_cut ||
                 (reading->cut_count > 0 && replay->run_count > 0 && !replay->runs[0].is_left);
     for (size_t i = 0; i < replay->run_count; ++i) {
-        left = left || (replay->runs[i].is_left && !replay->runs[i].over);
+        left = left || (replay->runs[i].is_left && !replay->runs[i].over.is_told);
     }
     return left && because(reason, "a file before the last one ends early, and the end is not in the others");
 }
@@ -308,7 +310,7 @@ static bool is_run_left(const wh_replay_t *replay, const wh_reading_t *reading, 
 static int64_t count_compared(const wh_replay_t *replay) {
     int64_t compared = 0;
     for (size_t i = 0; i < replay->run_count; ++i) {
-        compared += replay->runs[i].compared;
+        compared += replay->runs[i].slices.compared;
     }
     return compared;
 }
@@ -317,7 +319,7 @@ static int64_t count_compared(const wh_replay_t *replay) {
 static const wh_replay_run_t *find_difference(const wh_replay_t *replay, bool doubtful) {
     for (size_t i = 0; i < replay->run_count; ++i) {
         const wh_replay_run_t *run = &replay->runs[i];
-        if (run->differing > 0 && wh_reading_is_doubtful(replay, run) == doubtful) {
+        if (run->slices.differing > 0 && wh_reading_is_doubtful(replay, run) == doubtful) {
             return run;
         }
     }
@@ -343,7 +345,7 @@ static bool lacks_end(const wh_replay_t *replay, const wh_reading_t *reading, ch
         return replay->recording.closed == WH_RECORDING_BEGINS &&
                because(reason, "the recording was not closed, so nothing vouches for its texts");
     }
-    return (!last || !last->over) && because(reason, "the run's end is not in it");
+    return (!last || !last->over.is_told) && because(reason, "the run's end is not in it");
 }
 
 /* Damage, or anything missing that the leniency does not excuse. */

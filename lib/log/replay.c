@@ -7,9 +7,9 @@
 #include "replay_internal.h"
 
 void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss) {
-    if (replay->losses[loss].count++ == 0) {
-        replay->losses[loss].first = replay->at;
-        replay->losses[loss].file = replay->file;
+    if (replay->heard.losses[loss].count++ == 0) {
+        replay->heard.losses[loss].first = replay->place.at;
+        replay->heard.losses[loss].file = replay->place.file;
     }
 }
 
@@ -154,7 +154,7 @@ static void step_unanswered(wh_replay_t *replay, int64_t seq) {
 /* Counts the slices after the last one, up to this one, as passed over, except those that an earlier part
  * of the recording has. */
 static void skip_to(wh_replay_t *replay, int64_t seq) {
-    replay->run->skipped += replay->part_begins ? 0 : seq - replay->seq;
+    replay->run->slices.skipped += replay->files.part_begins ? 0 : seq - replay->seq;
 }
 
 /* For the first state of a run: true if it was replayed before. Else all slices before it are passed
@@ -166,7 +166,7 @@ static bool returns_to(wh_replay_t *replay, int64_t seq, bool is_restored) {
         replay->run->goes_on_from = returned->of;
         return true;
     }
-    replay->run->skipped += returned ? returned->seq - 1 : 0;
+    replay->run->slices.skipped += returned ? returned->seq - 1 : 0;
     return false;
 }
 
@@ -181,9 +181,9 @@ static void take_up(wh_replay_t *replay, int64_t seq) {
             skip_to(replay, seq);
         }
         if (is_restored) {
-            replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
-            replay->run->taken_up += replay->part_begins || returns ? 0 : 1;
-            replay->part_begins = false;
+            replay->run->begins_in_part = replay->run->begins_in_part || replay->files.part_begins;
+            replay->run->slices.taken_up += replay->files.part_begins || returns ? 0 : 1;
+            replay->files.part_begins = false;
             wh_replay_tell(replay, slot->has_command ? &slot->command : NULL, &message);
         } else {
             wh_replay_lose(replay, WH_REPLAY_GARBAGE);
@@ -255,7 +255,7 @@ static bool force_command(wh_replay_t *replay) {
     if (command == replay->seq + 1 && is_at_hand(replay)) {
         step_unanswered(replay, command);
     } else {
-        ++replay->run->unanswered;
+        ++replay->run->slices.unanswered;
         skip_to(replay, command - 1);
         replay->is_synchronous = false;
         advance_to(replay, command);
@@ -287,7 +287,7 @@ void wh_replay_finish(wh_replay_t *replay) {
     while (replay->run && (let_through(replay) || force(replay))) {
     }
     while (replay->run && first_with(replay, has_command) > 0) {
-        ++replay->run->last_unanswered;
+        ++replay->run->slices.last_unanswered;
         advance_to(replay, first_with(replay, has_command));
         replay->is_synchronous = false;
     }
@@ -313,8 +313,8 @@ static bool is_homeless(wh_replay_t *replay, const waferhand_command *message) {
         return false;
     }
     wh_replay_run_t *run = wh_replay_entry(replay, message->run);
-    if (run && run->homeless++ == 0) {
-        run->homeless_at = replay->at;
+    if (run && run->homeless.count++ == 0) {
+        run->homeless.at = replay->place.at;
     }
     return true;
 }
@@ -383,19 +383,19 @@ static bool is_of_last(const wh_replay_t *replay, const waferhand_state *message
 void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                           size_t size) {
     const bool is_last = is_of_last(replay, message);
-    if (is_last && replay->has_last) {
+    if (is_last && replay->block.is_there) {
         wh_replay_take_last_state(replay, message, data, size);
         return;
     }
     wh_replay_tell_last(replay);
-    if (is_last && replay->file_begins && replay->is_synchronous) {
+    if (is_last && replay->files.file_begins && replay->is_synchronous) {
         wh_replay_take_first_state(replay, message, data, size);
         return;
     }
-    replay->file_begins = false;
+    replay->files.file_begins = false;
     if (is_last && !replay->is_synchronous && replay->seq > 0) {
         --replay->seq; /* after a block that could not be stepped, and was counted */
-        --replay->run->skipped;
+        --replay->run->slices.skipped;
     }
     if (is_new(replay, message->run, message->seq, message->layout_hash)) {
         keep_state(replay, message, data, size);
@@ -427,7 +427,7 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
             return;
         }
         wh_replay_tell_last(replay);
-        wh_slices_get(slices, i, &replay->last, told, &hash);
+        wh_slices_get(slices, i, &replay->block.last, told, &hash);
         wh_replay_step_hashed(replay, told, hash);
     }
 }
@@ -437,7 +437,7 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
 bool wh_replay_is_vouched_for(const wh_replay_t *replay) {
     const wh_replay_recording_t *recording = &replay->recording;
     return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed &&
-           replay->open_files == 0;
+           replay->files.open_files == 0;
 }
 
 /* A file has ended: if its recording goes on, its next part must come. A file without a recording's
@@ -445,7 +445,7 @@ bool wh_replay_is_vouched_for(const wh_replay_t *replay) {
 static void await_part(wh_replay_t *replay) {
     const wh_replay_recording_t *recording = &replay->recording;
     if (recording->version > 0 && recording->closed == WH_RECORDING_GOES_ON) {
-        replay->awaited_part = recording->part + 1;
+        replay->files.awaited_part = recording->part + 1;
     }
 }
 
@@ -453,37 +453,37 @@ void wh_replay_next_file(wh_replay_t *replay) {
     wh_replay_recording_t *recording = &replay->recording;
     const bool is_open = recording->version == 0 || recording->closed == WH_RECORDING_BEGINS;
     wh_replay_tell_last(replay);
-    replay->open_files += is_open ? 1 : 0;
+    replay->files.open_files += is_open ? 1 : 0;
     await_part(replay);
-    if (replay->run && !replay->run->over) {
+    if (replay->run && !replay->run->over.is_told) {
         replay->run->is_left = true;
     }
     recording->closed = WH_RECORDING_BEGINS;
-    replay->events = replay->digest = 0;
-    replay->file_begins = true;
+    replay->heard.events = replay->heard.digest = 0;
+    replay->files.file_begins = true;
 }
 
 /* True if all expectations of the run are in the log, each once. */
 static bool has_expectations(const wh_replay_run_t *run) {
     const wh_log_numbers_t *there = &run->expectations;
-    return there->next == (uint64_t)run->told.expectations && there->doubled == 0 &&
+    return there->next == (uint64_t)run->over.outcome.expectations && there->doubled == 0 &&
            wh_log_numbers_missing(there) == 0;
 }
 
 /* Completes a run when no more messages come. */
 static void finish_run(wh_replay_t *replay, wh_replay_run_t *run) {
-    const wh_run_told_t *told = &run->told;
+    const wh_run_told_t *told = &run->over.outcome;
     const bool passed = told->verdict == WH_OUTCOME_PASSED;
     const bool counts = told->verdict != WH_OUTCOME_UNTOLD && has_expectations(run);
     if ((passed && run->unmet > 0) || (counts && run->unmet != told->expectations - told->met)) {
-        run->is_told_wrong = true;
-        replay->at = run->over_at;
+        run->over.is_wrong = true;
+        replay->place.at = run->over.at;
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
-    if (run->homeless > 0 && !run->is_other_layout) {
-        replay->at = run->homeless_at;
+    if (run->homeless.count > 0 && !run->homeless.is_other_layout) {
+        replay->place.at = run->homeless.at;
         wh_replay_lose(replay, WH_REPLAY_HOMELESS);
-        replay->losses[WH_REPLAY_HOMELESS].count += (uint64_t)run->homeless - 1;
+        replay->heard.losses[WH_REPLAY_HOMELESS].count += (uint64_t)run->homeless.count - 1;
     }
 }
 
@@ -495,9 +495,9 @@ void wh_replay_end(wh_replay_t *replay) {
         finish_run(replay, &replay->runs[i]);
     }
     /* A network may bring the cell of an earlier run late: no loss, if that is certain. */
-    if (replay->unknown_run != 0 && !wh_replay_find_run(replay, replay->unknown_run) &&
+    if (replay->heard.unknown_run != 0 && !wh_replay_find_run(replay, replay->heard.unknown_run) &&
         !wh_replay_is_vouched_for(replay)) {
-        replay->at = replay->unknown_at;
+        replay->place.at = replay->heard.unknown_at;
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
 }
@@ -515,7 +515,7 @@ void wh_replay_close(wh_replay_t *replay) {
     replay->told = NULL;
     replay->told_count = replay->told_capacity = 0;
     for (size_t i = 0; i < replay->run_count; ++i) {
-        free(replay->runs[i].reason);
+        free(replay->runs[i].over.reason);
     }
     replay->run_count = 0;
     if (replay->cell) {

@@ -41,6 +41,36 @@ typedef struct {
     double recorded, replayed;
 } wh_replay_difference_t;
 
+/* A run's slices, by what became of them. */
+typedef struct {
+    int64_t compared;        /* slices whose state was compared */
+    int64_t differing;       /* those of them that are not as recorded */
+    int64_t unanswered;      /* commands whose state is not in the log, though the log goes on */
+    int64_t last_unanswered; /* commands after the last state: the log ends before their states */
+    int64_t doubtful;        /* slices that differ after unanswered ones: their valves are not known */
+    int64_t outside_valves;  /* slices whose valves were not the command's */
+    int64_t taken_up;        /* the times that a message was missing and a state was taken over */
+    int64_t skipped;         /* slices that were passed over and not compared, including that state's slice */
+    int64_t missed;          /* free-running: commands that never came */
+} wh_replay_slices_t;
+
+/* Commands whose cell is not in the log. */
+typedef struct {
+    int64_t count;
+    uint64_t at;          /* the byte of the first one */
+    bool is_other_layout; /* the simulator refused them because of their layout */
+} wh_replay_homeless_t;
+
+/* Motion control's message that the run is over. */
+typedef struct {
+    bool is_told;
+    uint64_t at; /* its byte */
+    int64_t seq; /* the slice behind which it came */
+    wh_run_told_t outcome;
+    char *reason;  /* null: not given */
+    bool is_wrong; /* the message contradicts itself, or its expectations */
+} wh_replay_over_t;
+
 typedef struct {
     int64_t run;
     bool is_begun;        /* it has commands or states */
@@ -48,33 +78,18 @@ typedef struct {
     int64_t goes_on_from; /* the run with whose state of slice `first_slice` it begins; 0: none */
     uint64_t layout_hash;
     int64_t first_slice, last_slice; /* stepped or taken over */
-    int64_t compared;                /* slices whose state was compared */
-    int64_t differing;               /* those of them that are not as recorded */
-    int64_t unanswered;              /* commands whose state is not in the log, though the log goes on */
-    int64_t last_unanswered;         /* commands after the last state: the log ends before their states */
-    int64_t doubtful;       /* slices that differ after unanswered ones: their valves are not known */
-    int64_t outside_valves; /* slices whose valves were not the command's */
-    int64_t taken_up;       /* the times that a message was missing and a state was taken over */
-    int64_t skipped;        /* slices that were passed over and not compared, including that state's slice */
-    int64_t missed;         /* free-running: commands that never came */
-    int64_t refused;        /* commands that simulator and replay refused alike */
-    int64_t homeless;       /* commands of a layout whose cell is not in the log, */
-    uint64_t homeless_at;   /* the byte of the first one, */
-    bool is_other_layout;   /* and the simulator refused them because of that */
-    int64_t last_refused;   /* the slice of the last one */
-    int64_t collisions;     /* events of the collision check: as recorded, not compared */
-    uint64_t hash;          /* after the last slice */
+    wh_replay_slices_t slices;
+    int64_t refused; /* commands that simulator and replay refused alike */
+    wh_replay_homeless_t homeless;
+    int64_t last_refused;              /* the slice of the last one */
+    int64_t collisions;                /* events of the collision check: as recorded, not compared */
+    uint64_t hash;                     /* after the last slice */
     wh_replay_difference_t difference; /* if any differ */
     int64_t reached;                   /* the last slice with data in the log */
     bool is_left;                      /* a file of the log ends within it, without saying that it goes on */
-    bool over;                         /* motion control said that the run was over */
-    uint64_t over_at;                  /* at this byte, */
-    int64_t over_seq;                  /* after this slice, */
-    wh_run_told_t told;                /* and how it ended, */
-    char *reason;                      /* and the reason; null: not given */
-    bool is_told_wrong;                /* the message contradicts itself, or its expectations */
-    wh_log_numbers_t expectations;     /* the expectations in the log */
-    int64_t unmet;                     /* messages of an unmet expectation */
+    wh_replay_over_t over;
+    wh_log_numbers_t expectations; /* the expectations in the log */
+    int64_t unmet;                 /* messages of an unmet expectation */
 } wh_replay_run_t;
 
 /* The reason why one of our messages was not used. */
@@ -147,15 +162,52 @@ typedef void wh_replay_listener_t(void *user, const waferhand_command *command,
 typedef void wh_replay_stepped_t(void *user, const waferhand_command *command,
                                  const wh_protocol_server_t *server);
 
-/* Zero it at first, then set the wanted fields. Must not be moved afterwards. */
+/* The caller's wishes. */
 typedef struct {
     wh_replay_listener_t *listener; /* may be null */
     wh_replay_stepped_t *stepped;   /* null: the other one gets these slices too, as messages */
     void *user;
     int64_t only_run; /* 0: all */
-    uint64_t at;      /* the byte of the event that is passed in; set by the caller, */
-    size_t file;      /* in this file; set by the caller */
-    bool is_loose;    /* and its end may be wrong; set by the caller */
+} wh_replay_given_t;
+
+/* A place in the log. */
+typedef struct {
+    uint64_t at;   /* its byte, */
+    size_t file;   /* in this file */
+    bool is_loose; /* and its end may be wrong */
+} wh_replay_place_t;
+
+/* All that came. */
+typedef struct {
+    uint64_t events, messages; /* all; of ours, sound */
+    uint64_t digest;           /* wh_link_digest of ours */
+    wh_replay_count_t losses[WH_REPLAY_LOSSES];
+    uint64_t proximities; /* those that could not be compared: their slice was not the last one */
+    int64_t unknown_run;  /* named by a cell before the run itself came; 0: none */
+    uint64_t unknown_at;
+} wh_replay_heard_t;
+
+/* Files of one log, and parts of one recording. */
+typedef struct {
+    bool part_begins;     /* a later part of a recording, before its first state */
+    bool file_begins;     /* another file of the log, before its first state */
+    size_t open_files;    /* earlier files that were not closed: nothing confirms their texts */
+    int32_t lost_part;    /* the first part of the recording that is not there, between two files; 0: none */
+    int32_t awaited_part; /* the next file must be this part of the same recording; 0: any. Set at the end
+                           * of each file */
+} wh_replay_files_t;
+
+/* The last slice of a block. */
+typedef struct {
+    waferhand_command last;
+    bool is_there; /* and its whole state may follow */
+    bool differs;
+} wh_replay_block_t;
+
+/* Zero it at first, then set the wanted fields. Must not be moved afterwards. */
+typedef struct {
+    wh_replay_given_t given;
+    wh_replay_place_t place; /* of the event that is passed in; set by the caller */
 
     wh_replay_cell_t cells[WH_REPLAY_CELLS];
     size_t cell_count;
@@ -164,31 +216,20 @@ typedef struct {
     size_t return_count;
     wh_replay_run_t runs[WH_REPLAY_RUNS];
     size_t run_count;
-    uint64_t runs_left_out;    /* beyond WH_REPLAY_RUNS */
-    uint64_t events, messages; /* all; of ours, sound */
-    uint64_t digest;           /* wh_link_digest of ours */
+    uint64_t runs_left_out; /* beyond WH_REPLAY_RUNS */
+    wh_replay_heard_t heard;
     wh_replay_recording_t recording;
-    wh_replay_count_t losses[WH_REPLAY_LOSSES];
-    uint64_t proximities; /* those that could not be compared: their slice was not the last one */
-    int64_t unknown_run;  /* named by a cell before the run itself came; 0: none */
-    uint64_t unknown_at;
 
     const wh_replay_cell_t *cell; /* of the current run, whose slices go through: */
     wh_protocol_server_t server;
     wh_replay_run_t *run;               /* null before the first */
     const wh_replay_return_t *returned; /* the beginning of the run, until its first state has come; else
                                          * null */
-    waferhand_command last;             /* a block's last slice, while its whole state may follow: */
-    bool has_last, last_differs;
-    bool part_begins;     /* a later part of a recording, before its first state */
-    bool file_begins;     /* another file of the log, before its first state */
-    size_t open_files;    /* earlier files that were not closed: nothing confirms their texts */
-    int32_t lost_part;    /* the first part of the recording that is not there, between two files; 0: none */
-    int32_t awaited_part; /* the next file must be this part of the same recording; 0: any. Set at the end
-                           * of each file */
-    bool is_synchronous;  /* the server is at `seq` of the run */
-    bool is_unsure;       /* since the last comparison, a slice with unknown valves was stepped */
-    uint64_t *told;       /* by slice: a hash of the whole state that was compared; 0: none was */
+    wh_replay_block_t block;
+    wh_replay_files_t files;
+    bool is_synchronous; /* the server is at `seq` of the run */
+    bool is_unsure;      /* since the last comparison, a slice with unknown valves was stepped */
+    uint64_t *told;      /* by slice: a hash of the whole state that was compared; 0: none was */
     size_t told_count, told_capacity;
     int64_t seq, last_pending; /* the last slice that went through; the last one that waits */
     wh_replay_slot_t slots[WH_REPLAY_WINDOW];

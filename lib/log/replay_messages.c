@@ -8,7 +8,7 @@
 #include "replay_internal.h"
 
 static bool is_wanted(const wh_replay_t *replay, int64_t run) {
-    return replay->only_run == 0 || replay->only_run == run;
+    return replay->given.only_run == 0 || replay->given.only_run == run;
 }
 
 /* ------------------------------------------------------------------------------------ commands and states */
@@ -20,10 +20,10 @@ static bool is_slice(int64_t run, int64_t seq) {
 /* A message without a check may come from a sender that makes none; false if it may also be a torn one. */
 static bool is_to_be_had(wh_replay_t *replay, int64_t check) {
     if (check == 0) {
-        wh_replay_lose(replay, replay->is_loose ? WH_REPLAY_GARBAGE : WH_REPLAY_UNCHECKED);
-        return !replay->is_loose;
+        wh_replay_lose(replay, replay->place.is_loose ? WH_REPLAY_GARBAGE : WH_REPLAY_UNCHECKED);
+        return !replay->place.is_loose;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     return true;
 }
 
@@ -39,7 +39,7 @@ static void on_command(wh_replay_t *replay, const void *data, size_t size) {
 static void note_other_layout(wh_replay_t *replay, int64_t id) {
     wh_replay_run_t *run = wh_replay_entry(replay, id);
     if (run) {
-        run->is_other_layout = true;
+        run->homeless.is_other_layout = true;
     }
 }
 
@@ -108,12 +108,13 @@ static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         return;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     if (!is_placed(replay, message.utime, message.seq, message.run, message.layout_hash)) {
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
-    } else if (message.run != 0 && !wh_replay_find_run(replay, message.run) && replay->unknown_run == 0) {
-        replay->unknown_run = message.run;
-        replay->unknown_at = replay->at;
+    } else if (message.run != 0 && !wh_replay_find_run(replay, message.run) &&
+               replay->heard.unknown_run == 0) {
+        replay->heard.unknown_run = message.run;
+        replay->heard.unknown_at = replay->place.at;
     }
     add_cell(replay, &message);
     (void)waferhand_cell_decode_cleanup(&message);
@@ -125,22 +126,22 @@ static void take_expectation(wh_replay_t *replay, wh_replay_run_t *run, const wa
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
         return;
     }
-    wh_log_numbers_take(&run->expectations, (uint64_t)message->error - 1, replay->at);
+    wh_log_numbers_take(&run->expectations, (uint64_t)message->error - 1, replay->place.at);
     run->unmet += message->phase == WH_LINK_PHASE_UNMET ? 1 : 0;
 }
 
 /* Takes the end of the run. Programs before version 2 of recordings told no verdict. */
 static void take_over(wh_replay_t *replay, wh_replay_run_t *run, int64_t seq, const char *text) {
-    const char *reason = wh_outcome_read(text, &run->told);
-    run->over = true;
-    run->over_at = replay->at;
-    run->over_seq = seq;
+    const char *reason = wh_outcome_read(text, &run->over.outcome);
+    run->over.is_told = true;
+    run->over.at = replay->place.at;
+    run->over.seq = seq;
     if (!reason && text[0] != '\0') {
-        run->is_told_wrong = true;
+        run->over.is_wrong = true;
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
-    free(run->reason);
-    run->reason = reason && reason[0] != '\0' ? wh_text_copy(reason) : NULL;
+    free(run->over.reason);
+    run->over.reason = reason && reason[0] != '\0' ? wh_text_copy(reason) : NULL;
 }
 
 static void take_mcs(wh_replay_t *replay, const waferhand_mcs *message) {
@@ -160,7 +161,7 @@ static void on_mcs(wh_replay_t *replay, const void *data, size_t size) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         return;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     if (message.phase < 0 || message.phase >= WH_LINK_PHASES) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
     } else if (!is_placed(replay, message.utime, message.seq, message.run, message.layout_hash)) {
@@ -177,14 +178,15 @@ static void on_slices(wh_replay_t *replay, const void *data, size_t size) {
         !is_slice(slices.identity.run, slices.first + (int64_t)slices.count - 1)) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
     } else if (is_wanted(replay, slices.identity.run)) {
-        ++replay->messages;
+        ++replay->heard.messages;
         wh_replay_take_slices(replay, &slices);
     }
 }
 
 /* Compares the announced content of the log up to here with the real one. */
 static void check_recording(wh_replay_t *replay, const waferhand_recording *message) {
-    if (message->events != (int64_t)replay->events - 1 || (uint64_t)message->digest != replay->digest) {
+    if (message->events != (int64_t)replay->heard.events - 1 ||
+        (uint64_t)message->digest != replay->heard.digest) {
         replay->recording.is_changed = true;
         return;
     }
@@ -202,13 +204,14 @@ static void take_recording(wh_replay_t *replay, const waferhand_recording *messa
         return;
     }
     check_recording(replay, message);
-    if (replay->awaited_part != 0 && (recording->id != message->id || recording->part + 1 != message->part) &&
-        replay->lost_part == 0) {
-        replay->lost_part = replay->awaited_part;
+    if (replay->files.awaited_part != 0 &&
+        (recording->id != message->id || recording->part + 1 != message->part) &&
+        replay->files.lost_part == 0) {
+        replay->files.lost_part = replay->files.awaited_part;
     }
-    replay->awaited_part = 0;
-    if (replay->events == 1 && !replay->file_begins) {
-        replay->part_begins = message->part > 1;
+    replay->files.awaited_part = 0;
+    if (replay->heard.events == 1 && !replay->files.file_begins) {
+        replay->files.part_begins = message->part > 1;
         recording->first_part = message->part;
     }
     recording->id = message->id;
@@ -225,7 +228,7 @@ static void on_recording(wh_replay_t *replay, const void *data, size_t size) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         return;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     take_recording(replay, &message);
     (void)waferhand_recording_decode_cleanup(&message);
 }
@@ -247,7 +250,7 @@ static void on_request(wh_replay_t *replay, const void *data, size_t size) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         return;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     (void)waferhand_request_decode_cleanup(&message);
 }
 
@@ -264,9 +267,9 @@ static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
     if (!is_wanted(replay, message.run)) {
         return;
     }
-    ++replay->messages;
+    ++replay->heard.messages;
     if (!replay->is_synchronous || server->identity.run != message.run || server->seq != message.seq) {
-        ++replay->proximities;
+        ++replay->heard.proximities;
         return;
     }
     wh_link_proximity_to_message(&server->state, &server->identity, server->layout, &made);
@@ -298,7 +301,7 @@ static void on_edge_scan(wh_replay_t *replay, const void *data, size_t size) {
         return;
     }
     if (is_wanted(replay, message.run)) {
-        ++replay->messages;
+        ++replay->heard.messages;
         if (replay->is_synchronous && server->identity.run == message.run && server->seq == message.seq &&
             message.missed == 0 && !is_scan_of(&message, &server->simulator.physics.scan)) {
             wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
@@ -317,7 +320,7 @@ static void on_latch(wh_replay_t *replay, const void *data, size_t size) {
     }
     if (is_wanted(replay, message.run)) {
         const wh_latches_t *latches = &server->simulator.physics.latches;
-        ++replay->messages;
+        ++replay->heard.messages;
         if (replay->is_synchronous && server->identity.run == message.run && server->seq == message.seq &&
             (message.number != (int32_t)latches->number ||
              (int64_t)message.crossing_count + message.missed < (int64_t)latches->crossings)) {
@@ -356,7 +359,7 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
                     {WH_CHANNEL_RECORDING, on_recording}, {WH_CHANNEL_EDGE_SCAN, on_edge_scan},
                     {WH_CHANNEL_LATCH, on_latch}};
     const bool ours = strncmp(channel, WH_LINK_OURS, strlen(WH_LINK_OURS)) == 0;
-    ++replay->events;
+    ++replay->heard.events;
     if (ours && replay->recording.closed != WH_RECORDING_BEGINS) {
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS); /* the log goes on behind its end */
     }
@@ -369,7 +372,7 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
         }
     }
     if (ours) {
-        replay->digest = wh_link_digest(replay->digest, channel, data, size);
+        replay->heard.digest = wh_link_digest(replay->heard.digest, channel, data, size);
     }
     if (!is_known && (ours || is_ours(data, size))) {
         wh_replay_lose(replay, WH_REPLAY_STRAY);

@@ -9,7 +9,7 @@ static void note_slice(wh_replay_t *replay) {
         run->first_slice = replay->server.seq;
     }
     run->last_slice = replay->server.seq;
-    run->missed = replay->server.missed;
+    run->slices.missed = replay->server.missed;
     run->hash = wh_protocol_server_hash(&replay->server);
 }
 
@@ -18,7 +18,7 @@ static bool step(wh_replay_t *replay, const waferhand_command *command, const in
     const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, valves);
     replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
     if (replay->is_synchronous) {
-        replay->run->outside_valves += valves ? 1 : 0;
+        replay->run->slices.outside_valves += valves ? 1 : 0;
         note_slice(replay);
     }
     return replay->is_synchronous;
@@ -26,24 +26,24 @@ static bool step(wh_replay_t *replay, const waferhand_command *command, const in
 
 void wh_replay_tell(const wh_replay_t *replay, const waferhand_command *command,
                     const waferhand_state *message) {
-    if (replay->listener) {
-        replay->listener(replay->user, command, message);
+    if (replay->given.listener) {
+        replay->given.listener(replay->given.user, command, message);
     }
 }
 
 /* Calls the listener for a block's last slice, whose whole state has not come. */
 void wh_replay_tell_last(wh_replay_t *replay) {
-    if (replay->has_last && replay->stepped && !replay->last_differs) {
-        replay->stepped(replay->user, &replay->last, &replay->server);
-    } else if (replay->has_last && replay->listener) {
+    if (replay->block.is_there && replay->given.stepped && !replay->block.differs) {
+        replay->given.stepped(replay->given.user, &replay->block.last, &replay->server);
+    } else if (replay->block.is_there && replay->given.listener) {
         wh_protocol_server_tell(&replay->server, replay->run->hash);
-        wh_replay_tell(replay, &replay->last, &replay->server.room.message);
+        wh_replay_tell(replay, &replay->block.last, &replay->server.room.message);
     }
-    replay->has_last = false;
+    replay->block.is_there = false;
 }
 
 static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay_difference_t *difference) {
-    if (run->differing++ == 0) {
+    if (run->slices.differing++ == 0) {
         run->difference = *difference;
         run->difference.slice = slice;
     }
@@ -52,9 +52,9 @@ static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay
 /* Counts a slice that was compared; null: it is equal. False if the result is unsure because its valves
  * are not known. */
 static bool count_compared(wh_replay_t *replay, int64_t slice, const wh_replay_difference_t *difference) {
-    ++replay->run->compared;
+    ++replay->run->slices.compared;
     if (difference && replay->is_unsure) {
-        ++replay->run->doubtful;
+        ++replay->run->slices.doubtful;
         return false;
     }
     if (difference) {
@@ -92,7 +92,7 @@ static bool is_same(wh_replay_t *replay, const waferhand_state *message, const u
 /* Counts a command that the simulator accepted and the replay refuses, or the reverse. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed) {
     const wh_replay_difference_t difference = {.what = "status", .recorded = recorded, .replayed = replayed};
-    ++run->compared;
+    ++run->slices.compared;
     note_difference(run, slice, &difference);
 }
 
@@ -131,11 +131,11 @@ void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const
 void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                                size_t size) {
     wh_replay_difference_t difference;
-    if (!is_same(replay, message, data, size, &difference) && !replay->last_differs) {
+    if (!is_same(replay, message, data, size, &difference) && !replay->block.differs) {
         note_difference(replay->run, message->seq, &difference);
     }
-    wh_replay_tell(replay, &replay->last, message);
-    replay->has_last = false;
+    wh_replay_tell(replay, &replay->block.last, message);
+    replay->block.is_there = false;
 }
 
 /* Compares the first state of another file of the log: that of the last slice. */
@@ -143,7 +143,7 @@ void wh_replay_take_first_state(wh_replay_t *replay, const waferhand_state *mess
                                 size_t size) {
     wh_replay_difference_t difference;
     const int64_t collisions = replay->run->collisions; /* its events are counted already */
-    replay->file_begins = false;
+    replay->files.file_begins = false;
     if (!is_same(replay, message, data, size, &difference)) {
         note_difference(replay->run, message->seq, &difference);
     }
@@ -152,27 +152,27 @@ void wh_replay_take_first_state(wh_replay_t *replay, const waferhand_state *mess
 
 /* Steps a slice of a block: the hash is compared instead of the state. */
 void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash) {
-    const waferhand_command *command = &replay->last;
+    const waferhand_command *command = &replay->block.last;
     const bool outside = memcmp(told, command->valve, (size_t)command->gripper_count * sizeof *told) != 0;
     wh_replay_run_t *run = replay->run;
     replay->seq = command->seq;
-    replay->last_differs = true;
+    replay->block.differs = true;
     if (!step(replay, command, outside ? told : NULL)) {
         wh_replay_differ_in_status(run, command->seq, WH_OK, replay->server.room.message.status);
         return;
     }
     const wh_replay_difference_t difference = {
         .what = "hash", .recorded = (double)hash, .replayed = (double)run->hash};
-    replay->has_last = true;
-    replay->last_differs = hash != run->hash;
-    replay->is_synchronous = count_compared(replay, command->seq, replay->last_differs ? &difference : NULL);
-    if (!replay->last_differs) {
+    replay->block.is_there = true;
+    replay->block.differs = hash != run->hash;
+    replay->is_synchronous = count_compared(replay, command->seq, replay->block.differs ? &difference : NULL);
+    if (!replay->block.differs) {
         wh_replay_pass_slice(replay);
     }
 }
 
 void wh_replay_step_alone(wh_replay_t *replay, const waferhand_command *command) {
-    ++replay->run->unanswered;
+    ++replay->run->slices.unanswered;
     replay->is_unsure = true;
     (void)step(replay, command, NULL);
 }

@@ -83,7 +83,7 @@ static bool waits_for(const wh_mcs_t *mcs, size_t alarm, int32_t job) {
 
 static int32_t current_job(const wh_mcs_t *mcs) {
     const int32_t job = mcs->lanes ? mcs->lanes->of[mcs->lanes->current].job : 0;
-    return job != 0 ? job : mcs->asker.controller;
+    return job != 0 ? job : mcs->wanted.asker.controller;
 }
 
 bool wh_mcs_take_alarm(wh_mcs_t *mcs, wh_status_t error, int32_t job) {

@@ -126,16 +126,16 @@ static int refuse_wait(lua_State *L) {
  * controller. */
 static int push_asked_robot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
-    if (mcs->asker.robot == 0) {
+    if (mcs->wanted.asker.robot == 0) {
         return 0;
     }
-    lua_pushinteger(L, mcs->asker.robot);
+    lua_pushinteger(L, mcs->wanted.asker.robot);
     return 1;
 }
 
 /* native.is_part(): true for a line that UNDO takes back with the one before it. */
 static int push_is_part(lua_State *L) {
-    lua_pushboolean(L, wh_mcs_of(L)->asker.is_part);
+    lua_pushboolean(L, wh_mcs_of(L)->wanted.asker.is_part);
     return 1;
 }
 

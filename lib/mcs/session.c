@@ -278,9 +278,9 @@ wh_status_t wh_session_execute_for(wh_session_t *session, const wh_mcs_asker_t *
     if (session->executing) {
         return wh_session_execute(session, line, answer, size);
     }
-    session->mcs.asker = *asker;
+    session->mcs.wanted.asker = *asker;
     const wh_status_t status = wh_session_execute(session, line, answer, size);
-    session->mcs.asker = (wh_mcs_asker_t){0};
+    session->mcs.wanted.asker = (wh_mcs_asker_t){0};
     return status;
 }
 

@@ -175,6 +175,13 @@ typedef enum {
     WH_MCS_COUNT_BLIND   /* likewise; a cell with collision = true is played in full */
 } wh_mcs_count_t;
 
+/* The controller that asks for a line, for its own answers and errors. Zero: none. */
+typedef struct {
+    int32_t controller; /* from 1, the one whose question is answered */
+    int32_t robot;      /* from 1, the robot whose own controller asks */
+    bool is_part;       /* the line belongs to the one before it */
+} wh_mcs_asker_t;
+
 /* The caller's wishes for a run; all may be zero. */
 typedef struct {
     bool refuses_unread;     /* the cell is not connected while a parameter is unread */
@@ -194,14 +201,8 @@ typedef struct {
     const wh_trial_t *trial;   /* a study's trial, whose errors the cell has; null: as in its layout */
     const char *const *errors; /* in a trial: the errors it has instead of drawn ones, if any */
     size_t error_count;
+    wh_mcs_asker_t asker; /* of the line that is executed */
 } wh_mcs_wanted_t;
-
-/* The controller that asks for a line, for its own answers and errors. Zero: none. */
-typedef struct {
-    int32_t controller; /* from 1, the one whose question is answered */
-    int32_t robot;      /* from 1, the robot whose own controller asks */
-    bool is_part;       /* the line belongs to the one before it */
-} wh_mcs_asker_t;
 
 /* A STOP, and what else must end a portion of slices. */
 typedef struct {
@@ -304,9 +305,8 @@ struct wh_mcs {
     wh_mcs_held_t held[WH_MCS_ROBOTS]; /* each robot's command that CONTINUE goes on with */
     wh_mcs_stop_t stop;
     wh_mcs_armed_t armed;
-    wh_mcs_asker_t asker; /* of the line that is executed; the caller sets it */
-    wh_lanes_t *lanes;    /* null: there are no tasks; then `track` has the running segment */
-    wh_mcs_jobs_t jobs;   /* while they are played */
+    wh_lanes_t *lanes;  /* null: there are no tasks; then `track` has the running segment */
+    wh_mcs_jobs_t jobs; /* while they are played */
 
     /* The results. */
     wh_mcs_measuring_t measuring;

@@ -42,8 +42,8 @@ static void add_decisions(const concerns_t *concerns, const wh_decisions_t *deci
         add_wafer(concerns, decisions->asked[i].wafer);
         add_station(concerns, decisions->asked[i].station);
     }
-    for (size_t i = 0; i < decisions->visit_count; ++i) {
-        add_station(concerns, decisions->visits[i].station);
+    for (size_t i = 0; i < decisions->visits.count; ++i) {
+        add_station(concerns, decisions->visits.items[i].station);
     }
     for (size_t i = 0; i < decisions->looked_count; ++i) {
         add_wafer(concerns, decisions->looked[i]);
@@ -76,9 +76,9 @@ static void add_measured(const concerns_t *concerns) {
 
 static bool was_visited(const wh_decisions_t *decisions, size_t station, int32_t robot) {
     bool was = false;
-    for (size_t i = 0; i < decisions->visit_count; ++i) {
-        was =
-            was || (decisions->visits[i].station == (int32_t)station && decisions->visits[i].robot == robot);
+    for (size_t i = 0; i < decisions->visits.count; ++i) {
+        was = was || (decisions->visits.items[i].station == (int32_t)station &&
+                      decisions->visits.items[i].robot == robot);
     }
     return was;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../mcs/native.h"
+#include "../mcs/other_cell.h"
 #include "../sim/event_text.h"
 
 /* Registry keys of the functions that check a station, play there, and turn over there. */
@@ -107,14 +108,6 @@ static int take_failure(lua_State *L) {
     return 0;
 }
 
-static int64_t count_slices(const wh_rehearsal_t *rehearsal) {
-    int64_t slices = 0;
-    for (size_t i = 0; i < rehearsal->planned.count; ++i) {
-        slices += rehearsal->planned.segments[i].track.segment_slices;
-    }
-    return slices;
-}
-
 static const wh_real_t *read_cell_axes(lua_State *L, const wh_layout_t *layout, wh_real_t axes[WH_AXES]) {
     luaL_checktype(L, 1, LUA_TTABLE);
     for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
@@ -147,7 +140,7 @@ static int stage_cell(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     wh_survey_t *survey = job->survey;
     wh_real_t axes[WH_AXES] = {0};
-    const int64_t slices = count_slices(&survey->mcs.rehearsal);
+    const int64_t slices = wh_other_cell_planned(&survey->mcs);
     const int32_t empty = (int32_t)luaL_optinteger(L, 2, 0);
     (void)read_cell_axes(L, job->layout, axes);
     const bool fits = 2 * slices <= WH_TRYOUT_SLICES;

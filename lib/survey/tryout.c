@@ -6,7 +6,7 @@
 
 #include "../layout/doors.h"
 #include "../layout/ports.h"
-#include "../mcs/carrying.h"
+#include "../mcs/other_cell.h"
 #include "../sim/event_text.h"
 #include "../text/array.h"
 
@@ -132,12 +132,6 @@ static void take_memory(wh_tryout_t *tryout) {
     }
 }
 
-static void use_layout(wh_mcs_t *mcs, const wh_layout_t *layout) {
-    mcs->layout = mcs->real = layout;
-    mcs->recorder.layout = layout;
-    mcs->recorder.cell = &layout->cell;
-}
-
 /* Farther away than anything in a cell, mm. */
 #define ELSEWHERE WH_REAL(5e5)
 
@@ -163,56 +157,38 @@ static wh_status_t set_up_tryout(wh_tryout_t *tryout) {
         status = wh_layout_give_grips(full, &tryout->simulator, &tryout->grips);
     }
     if (status == WH_OK) {
-        status = wh_track_init(&tryout->mcs->track, &full->machine, full->slice_us);
-    }
-    if (status == WH_OK) {
-        wh_track_take_ways(&tryout->mcs->track);
-        wh_track_take_vias(&tryout->mcs->track);
-        wh_carrying_start(&tryout->mcs->track, full);
+        status = wh_other_cell_enter(tryout->mcs, full, &tryout->simulator);
     }
     return status;
 }
 
 wh_status_t wh_tryout_begin(wh_tryout_t *tryout, size_t station, const wh_real_t axes[WH_AXES], size_t to,
                             int32_t empty) {
-    wh_mcs_t *mcs = tryout->mcs;
     if (tryout->station != (int32_t)station) {
         fill_station(tryout, station);
         take_memory(tryout);
     }
     const wh_layout_t *full = &tryout->full;
-    tryout->slices += mcs->track.slice;
+    tryout->slices += wh_other_cell_slices(tryout->mcs);
     memcpy(tryout->storage.wafers, full->start, full->wafer_count * sizeof *full->start);
     take_away(tryout, to, empty);
     const wh_status_t status = set_up_tryout(tryout);
     if (status == WH_OK) {
-        use_layout(mcs, full);
-        wh_simulator_view(&tryout->simulator, &mcs->state);
-        mcs->link = &tryout->simulator.link;
         wh_tryout_move(tryout, axes);
     }
     return status;
 }
 
-/* Opens the doors: a tried command goes through open doors. */
-static void open_doors(wh_tryout_t *tryout) {
+/* A tried command goes through open doors. */
+void wh_tryout_move(wh_tryout_t *tryout, const wh_real_t axes[WH_AXES]) {
     const wh_machine_t *machine = &tryout->full.machine;
+    wh_other_cell_place(tryout->mcs, axes);
     for (size_t d = 0; d < machine->door_count; ++d) {
         tryout->simulator.physics.doors.at[d] = machine->doors[d].travel;
-        tryout->mcs->track.axes[wh_machine_door_axis(machine, d)] = machine->doors[d].travel;
     }
-}
-
-void wh_tryout_move(wh_tryout_t *tryout, const wh_real_t axes[WH_AXES]) {
-    wh_mcs_t *mcs = tryout->mcs;
-    if (axes) {
-        memcpy(mcs->track.axes, axes, sizeof mcs->track.axes);
-    }
-    open_doors(tryout);
     if (tryout->world_memory) {
         wh_collision_attach(&tryout->collision, &tryout->full, &tryout->simulator, tryout->world_memory);
     }
-    mcs->recorder.record->event_count = 0;
 }
 
 /* ------------------------------------------------------------------------------------------- on the blade */
@@ -222,7 +198,8 @@ void wh_tryout_move(wh_tryout_t *tryout, const wh_real_t axes[WH_AXES]) {
 #define SAME_TILT WH_REAL(1e-5)
 
 void wh_tryout_note_lift(wh_tryout_t *tryout, size_t station) {
-    const wh_gripper_t *gripper = &tryout->mcs->state.grippers[tryout->layout->stations[station].effector];
+    const wh_gripper_t *gripper =
+        wh_other_cell_gripper(tryout->mcs, (size_t)tryout->layout->stations[station].effector);
     wh_tryout_lift_t *lift = &tryout->lifts[station];
     if (!lift->is_known && gripper->wafer != WH_NONE) {
         lift->is_known = true;
@@ -301,13 +278,13 @@ static const wh_event_t *find_first_complaint(const wh_record_t *record) {
 }
 
 bool wh_tryout_touched(const wh_tryout_t *tryout) {
-    const wh_event_t *complaint = find_first_complaint(tryout->mcs->recorder.record);
+    const wh_event_t *complaint = find_first_complaint(wh_mcs_record(tryout->mcs));
     return complaint && wh_record_is_contact(complaint->kind);
 }
 
 bool wh_tryout_complained(const wh_tryout_t *tryout, char *text, size_t size) {
     const wh_event_names_t names = {find_name, &tryout->full, 1, &tryout->full.grasp.tolerance, NULL};
-    const wh_event_t *complaint = find_first_complaint(tryout->mcs->recorder.record);
+    const wh_event_t *complaint = find_first_complaint(wh_mcs_record(tryout->mcs));
     if (complaint) {
         put_event(complaint, &names, text, size);
     }
@@ -315,15 +292,8 @@ bool wh_tryout_complained(const wh_tryout_t *tryout, char *text, size_t size) {
 }
 
 void wh_tryout_end(wh_tryout_t *tryout) {
-    wh_mcs_t *mcs = tryout->mcs;
-    mcs->link = NULL;
-    tryout->slices += mcs->track.slice;
-    use_layout(mcs, tryout->layout);
-    (void)wh_track_init(&mcs->track, &tryout->layout->machine, tryout->layout->slice_us);
-    wh_track_take_ways(&mcs->track);
-    wh_track_take_vias(&mcs->track);
-    wh_carrying_start(&mcs->track, tryout->layout);
-    wh_simulator_view(&mcs->local.simulator, &mcs->state);
+    tryout->slices += wh_other_cell_slices(tryout->mcs);
+    wh_other_cell_leave(tryout->mcs, tryout->layout);
 }
 
 void wh_tryout_close(wh_tryout_t *tryout) {

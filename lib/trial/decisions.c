@@ -100,15 +100,15 @@ void wh_decisions_asked(wh_decisions_t *decisions, wh_decisions_kind_t kind,
 }
 
 void wh_decisions_visit(wh_decisions_t *decisions, int32_t station, int32_t robot) {
-    for (size_t i = 0; decisions && i < decisions->visit_count; ++i) {
-        if (decisions->visits[i].station == station && decisions->visits[i].robot == robot) {
+    for (size_t i = 0; decisions && i < decisions->visits.count; ++i) {
+        if (decisions->visits.items[i].station == station && decisions->visits.items[i].robot == robot) {
             return;
         }
     }
     if (decisions) {
-        decisions->visits = wh_array_grow(decisions->visits, decisions->visit_count,
-                                          &decisions->visit_capacity, sizeof *decisions->visits);
-        decisions->visits[decisions->visit_count++] = (wh_decisions_visit_t){station, robot};
+        decisions->visits.items = wh_array_grow(decisions->visits.items, decisions->visits.count,
+                                                &decisions->visits.capacity, sizeof *decisions->visits.items);
+        decisions->visits.items[decisions->visits.count++] = (wh_decisions_visit_t){station, robot};
     }
 }
 
@@ -173,7 +173,7 @@ void wh_decisions_free(wh_decisions_t *decisions) {
     free(decisions->entries);
     free(decisions->claims);
     free(decisions->asked);
-    free(decisions->visits);
+    free(decisions->visits.items);
     free(decisions->looked);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         free(decisions->valves[g]);

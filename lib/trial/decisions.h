@@ -58,6 +58,12 @@ typedef struct {
     int32_t station, robot;
 } wh_decisions_visit_t;
 
+/* Each once. */
+typedef struct {
+    wh_decisions_visit_t *items;
+    size_t count, capacity;
+} wh_decisions_visits_t;
+
 /* The command to a gripper's valve from slice `slice` on. */
 typedef struct {
     int64_t slice;
@@ -87,8 +93,7 @@ typedef struct {
     size_t claim_count, claim_capacity;
     wh_decisions_asked_t *asked;
     size_t asked_count, asked_capacity;
-    wh_decisions_visit_t *visits; /* each once */
-    size_t visit_count, visit_capacity;
+    wh_decisions_visits_t visits;
     int32_t *looked; /* wafers whose place was read, some more than once */
     size_t looked_count, looked_capacity;
     wh_decisions_valve_t *valves[WH_GRIPPERS]; /* where they change */

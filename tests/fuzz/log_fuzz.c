@@ -42,8 +42,9 @@ static void check_runs(const wh_replay_t *replay) {
     REQUIRE(replay->run_count <= WH_REPLAY_RUNS && replay->cell_count <= WH_REPLAY_CELLS);
     for (size_t i = 0; i < replay->run_count; ++i) {
         const wh_replay_run_t *const run = &replay->runs[i];
-        REQUIRE(run->compared >= 0 && run->unanswered >= 0 && run->outside_valves >= 0 && run->taken_up >= 0);
-        REQUIRE(run->differing >= 0 && run->differing <= run->compared);
+        REQUIRE(run->slices.compared >= 0 && run->slices.unanswered >= 0 && run->slices.outside_valves >= 0 &&
+                run->slices.taken_up >= 0);
+        REQUIRE(run->slices.differing >= 0 && run->slices.differing <= run->slices.compared);
         REQUIRE(memchr(run->difference.what, '\0', sizeof run->difference.what) != NULL);
         REQUIRE(run->first_slice <= run->last_slice);
         for (size_t other = 0; other < i; ++other) {
@@ -147,8 +148,8 @@ static void report(void) {
         const wh_document_t document = {.title = "log",
                                         .reproduce = "",
                                         .source = "log",
-                                        .notes = run.notes,
-                                        .note_count = run.note_count,
+                                        .notes = run.notes.texts,
+                                        .note_count = run.notes.count,
                                         .run = record,
                                         .record = &run.record,
                                         .signals = &run.signals};

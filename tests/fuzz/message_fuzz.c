@@ -343,9 +343,9 @@ static bool next_message(wh_node_t *to) {
     /* After each datagram, the known state has the hash that it names. */
     fuzz_deliver(to, frame.channel, frame.bytes, frame.size);
     const wh_protocol_client_t *const client = &control.client;
-    if (client->has_state) {
-        check_sound(client->state.wafers, client->state.grippers, client->state.physics,
-                    (uint64_t)(client->state.seq - client->missed), client->hash);
+    if (client->taken.is_there) {
+        check_sound(client->taken.state.wafers, client->taken.state.grippers, client->taken.state.physics,
+                    (uint64_t)(client->taken.state.seq - client->taken.missed), client->taken.hash);
     }
     return true;
 }
@@ -403,11 +403,11 @@ static void check_report(void) {
 
 static void take_requests(void) {
     char line[WH_LINK_LINE];
-    REQUIRE(control.waiting_count <= WH_CONTROL_REQUESTS);
+    REQUIRE(control.requests.waiting_count <= WH_CONTROL_REQUESTS);
     while (wh_mcs_process_next_request(&control, line)) {
-        REQUIRE(control.executing.seq != 0);
+        REQUIRE(control.requests.executing.seq != 0);
         wh_mcs_process_answer(&control, strlen(line) % 2 == 0 ? WH_OK : WH_STATUS_BAD_ARGUMENT, line);
-        REQUIRE(control.executing.seq == 0);
+        REQUIRE(control.requests.executing.seq == 0);
     }
 }
 

@@ -586,7 +586,7 @@ static void a_datagram_that_is_no_request_is_answered_if_it_has_a_number(void **
     assert_true(wh_node_publish(&node, WH_CHANNEL_REQUEST, encoded, size));
     execute_requests();
     assert_int_equal(heard.count[9], 2);
-    assert_int_equal(control.garbage, 4);
+    assert_int_equal(control.requests.garbage, 4);
     publish_request(9, "GET A 1");
     execute_requests();
     assert_int_equal(heard.error[9], WH_OK);

@@ -156,7 +156,7 @@ static void refuse_a_wafer(waferhand_state *message) {
 static void a_possible_state_is_taken(void **state) {
     (void)state;
     assert_int_equal(malformed_after(change_nothing), 0);
-    assert_int_equal(client.event_count, 1);
+    assert_int_equal(client.heard.count, 1);
 }
 
 static void impossible_states_are_not(void **state) {
@@ -170,8 +170,8 @@ static void impossible_states_are_not(void **state) {
         if (malformed_after(changes[i]) == 0) {
             fail_msg("change %zu was taken", i);
         }
-        assert_int_equal(client.event_count, 0);
-        assert_true(client.hash == wh_protocol_server_hash(&server));
+        assert_int_equal(client.heard.count, 0);
+        assert_true(client.taken.hash == wh_protocol_server_hash(&server));
     }
 }
 
@@ -240,14 +240,14 @@ static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answer
         const int64_t begin = wh_node_clock_us();
         assert_int_equal(send_slice(1, &answer), WH_STATUS_NO_ANSWER);
         assert_in_range(wh_node_clock_us() - begin, 100000, 5000000);
-        assert_true(client.timed_out);
+        assert_true(client.silence.timed_out);
     }
     assert_int_equal(wh_protocol_client_resume(&client), WH_STATUS_NO_ANSWER);
     assert_int_equal(wh_protocol_client_reached(&client), 1);
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
     assert_int_equal(wh_protocol_client_resume(&client), WH_OK);
     assert_int_equal(send_slice(2, &answer), WH_OK);
-    assert_false(client.timed_out);
+    assert_false(client.silence.timed_out);
     assert_int_equal(server.seq, 2);
     wh_node_close(&node);
 }
@@ -269,7 +269,7 @@ static void impossible_answers_end_a_wait_as_none_would(void **state) {
     open_client(&options);
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_impossibly, NULL));
     assert_int_equal(send_slice(1, &answer), WH_STATUS_NO_ANSWER);
-    assert_true(client.timed_out && client.counters.malformed > 0);
+    assert_true(client.silence.timed_out && client.counters.malformed > 0);
     const char *told = strstr(said, "the simulator's state of slice 1 cannot be one of this layout");
     assert_non_null(told);
     assert_null(strstr(told + 1, "the simulator's state"));
@@ -501,7 +501,7 @@ static void a_run_is_put_back_if_the_simulator_takes_its_state(void **state) {
         assert_int_equal(send_slice(seq, &answer), WH_OK);
     }
     const size_t size = wh_protocol_client_save(&client, saved[1]);
-    const uint64_t hash = client.hash;
+    const uint64_t hash = client.taken.hash;
     const int64_t run = client.identity.run;
     assert_int_equal(send_slice(4, &answer), WH_OK);
     assert_int_equal(wh_protocol_client_restore(&client, saved[1], size, &answer), WH_STATUS_NOT_RESTORED);
@@ -512,7 +512,7 @@ static void a_run_is_put_back_if_the_simulator_takes_its_state(void **state) {
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_RESTORE, take_back, NULL));
     assert_int_equal(wh_protocol_client_restore(&client, saved[1], size, &answer), WH_OK);
     assert_true(client.identity.run != run);
-    assert_int_equal(client.hash, hash);
+    assert_int_equal(client.taken.hash, hash);
     assert_int_equal(answer.seq, 3);
     assert_int_equal(answer.event_count, 0);
     assert_int_equal(server.seq, 3);

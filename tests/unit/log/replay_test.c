@@ -106,8 +106,8 @@ static void the_same(void **state) {
         record_state();
         record_state();
     }
-    assert_int_equal(only_run()->compared, 30);
-    assert_int_equal(only_run()->differing, 0);
+    assert_int_equal(only_run()->slices.compared, 30);
+    assert_int_equal(only_run()->slices.differing, 0);
     assert_true(only_run()->hash == wh_protocol_server_hash(&server));
     assert_int_equal(replay.server.simulator.table.counters.picked, 1);
 }
@@ -125,7 +125,7 @@ static void states_before_their_commands(void **state) {
             record_state();
         }
     }
-    assert_int_equal(only_run()->compared, 5);
+    assert_int_equal(only_run()->slices.compared, 5);
 }
 
 static void move_wafer(waferhand_state *message) {
@@ -153,12 +153,12 @@ static void the_first_difference_is_named(void **state) {
         }
     }
     const wh_replay_run_t *run = only_run();
-    assert_int_equal(run->differing, 2);
+    assert_int_equal(run->slices.differing, 2);
     assert_int_equal(run->difference.slice, 4);
     assert_string_equal(run->difference.what, "Wafer 2, position z");
     assert_near(run->difference.recorded, 900.5, 0);
     assert_near(run->difference.replayed, 900, 0);
-    assert_int_equal(run->compared, 6);
+    assert_int_equal(run->slices.compared, 6);
 }
 
 /* A state that comes again is not stepped again, and must be as before: at once, later, or while it waits. */
@@ -172,10 +172,10 @@ static void a_state_that_comes_again_otherwise_is_counted(void **state) {
         if (seq == 2) {
             record_changed_state(move_wafer);
         }
-        assert_int_equal(replay.losses[WH_REPLAY_CONTRADICTS].count, seq >= 2 ? 1 : 0);
+        assert_int_equal(replay.heard.losses[WH_REPLAY_CONTRADICTS].count, seq >= 2 ? 1 : 0);
     }
-    assert_int_equal(only_run()->compared, 6);
-    assert_int_equal(only_run()->differing, 0);
+    assert_int_equal(only_run()->slices.compared, 6);
+    assert_int_equal(only_run()->slices.differing, 0);
 }
 
 static void another_command_is_found_out(void **state) {
@@ -187,7 +187,7 @@ static void another_command_is_found_out(void **state) {
         record_command(&message);
         record_state();
     }
-    assert_int_equal(only_run()->differing, 1);
+    assert_int_equal(only_run()->slices.differing, 1);
     assert_int_equal(only_run()->difference.slice, 2);
     assert_string_equal(only_run()->difference.what, "EE, position y");
 }
@@ -199,8 +199,8 @@ static void valves_from_outside_are_followed(void **state) {
     assert_int_not_equal(wh_protocol_server_command(&server, &message, closed), WH_SERVER_IGNORED);
     record_command(&message);
     record_state();
-    assert_int_equal(only_run()->outside_valves, 1);
-    assert_int_equal(only_run()->differing, 0);
+    assert_int_equal(only_run()->slices.outside_valves, 1);
+    assert_int_equal(only_run()->slices.differing, 0);
 }
 
 static void a_hole_is_bridged(void **state) {
@@ -213,11 +213,11 @@ static void a_hole_is_bridged(void **state) {
             record_state();
         }
     }
-    assert_int_equal(only_run()->differing, 0);
-    assert_int_equal(only_run()->taken_up, 1);
+    assert_int_equal(only_run()->slices.differing, 0);
+    assert_int_equal(only_run()->slices.taken_up, 1);
     assert_int_equal(only_run()->last_slice, 9);
-    assert_int_equal(only_run()->compared, 5);
-    assert_int_equal(only_run()->skipped, 4);
+    assert_int_equal(only_run()->slices.compared, 5);
+    assert_int_equal(only_run()->slices.skipped, 4);
 }
 
 /* Each slice up to the last one is compared or skipped, however many are missing. */
@@ -240,8 +240,8 @@ static void a_hole_of_any_size_is_counted(void **state) {
             }
         }
         assert_int_equal(only_run()->last_slice, last);
-        assert_int_equal(only_run()->compared, holes[i][0] - 1 + 5);
-        assert_int_equal(only_run()->skipped, holes[i][1] - holes[i][0] + 1);
+        assert_int_equal(only_run()->slices.compared, holes[i][0] - 1 + 5);
+        assert_int_equal(only_run()->slices.skipped, holes[i][1] - holes[i][0] + 1);
         wh_replay_close(&replay);
     }
 }
@@ -264,9 +264,9 @@ static void the_reason_of_a_failed_run_is_kept(void **state) {
     record_mcs(WH_LINK_PHASE_MET, 1, "so far");
     record_mcs(WH_LINK_PHASE_OVER, 0,
                "failed; commands 2, expectations 1, met 1, cycles 0; error.lua:4: GET Z 77");
-    assert_int_equal(only_run()->told.verdict, WH_OUTCOME_FAILED);
-    assert_string_equal(only_run()->reason, "error.lua:4: GET Z 77");
-    assert_false(only_run()->is_told_wrong);
+    assert_int_equal(only_run()->over.outcome.verdict, WH_OUTCOME_FAILED);
+    assert_string_equal(only_run()->over.reason, "error.lua:4: GET Z 77");
+    assert_false(only_run()->over.is_wrong);
 }
 
 /* No program publishes a verdict that does not fit its counts, or contradicts its earlier ones. */
@@ -294,8 +294,8 @@ static void a_verdict_that_contradicts_is_damage(void **state) {
         record_mcs(cases[i].second, 2, "two");
         record_mcs(WH_LINK_PHASE_OVER, 0, cases[i].text);
         print_message("%s\n", cases[i].text);
-        assert_int_equal(only_run()->is_told_wrong, cases[i].is_wrong);
-        assert_int_equal(replay.losses[WH_REPLAY_CONTRADICTS].count, cases[i].is_wrong ? 1 : 0);
+        assert_int_equal(only_run()->over.is_wrong, cases[i].is_wrong);
+        assert_int_equal(replay.heard.losses[WH_REPLAY_CONTRADICTS].count, cases[i].is_wrong ? 1 : 0);
         wh_replay_close(&replay);
     }
 }
@@ -320,10 +320,10 @@ static void a_run_of_another_layout_is_told(void **state) {
                    "failed; commands 1, expectations 0, met 0, cycles 0; OTHER_LAYOUT");
         const wh_replay_run_t *run = only_run();
         assert_false(run->is_begun);
-        assert_int_equal(run->is_other_layout, refused);
-        assert_int_equal(run->homeless, 1);
-        assert_int_equal(run->told.verdict, WH_OUTCOME_FAILED);
-        assert_int_equal(replay.losses[WH_REPLAY_HOMELESS].count, 1 - refused);
+        assert_int_equal(run->homeless.is_other_layout, refused);
+        assert_int_equal(run->homeless.count, 1);
+        assert_int_equal(run->over.outcome.verdict, WH_OUTCOME_FAILED);
+        assert_int_equal(replay.heard.losses[WH_REPLAY_HOMELESS].count, 1 - refused);
         assert_int_equal(wh_reading_judge(&replay, &reading, false, reason), WH_READING_INCOMPLETE);
         assert_non_null(strstr(reason, refused ? "no slice" : "layout"));
         wh_replay_close(&replay);
@@ -366,14 +366,14 @@ static void garbage_is_counted(void **state) {
     wh_replay_event(&replay, WH_CHANNEL_STATE, bytes, 10);
     wh_replay_event(&replay, WH_CHANNEL_CELL, bytes, 0);
     wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, 1000);
-    assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 3);
+    assert_int_equal(replay.heard.losses[WH_REPLAY_GARBAGE].count, 3);
     /* Data that are skipped only if they are sound, too. */
     static const char *const others[] = {WH_CHANNEL_MCS,       WH_CHANNEL_RESTORE, WH_CHANNEL_REQUEST,
                                          WH_CHANNEL_PROXIMITY, WH_CHANNEL_SLICES,  WH_CHANNEL_RECORDING,
                                          WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
     for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
         wh_replay_event(&replay, others[i], bytes, 1000);
-        assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 4 + i);
+        assert_int_equal(replay.heard.losses[WH_REPLAY_GARBAGE].count, 4 + i);
     }
     assert_int_equal(replay.run_count, 0);
 }
@@ -403,11 +403,11 @@ static void a_body_without_a_check_differs(void **state) {
         wh_replay_event(&replay, WH_CHANNEL_STATE, bytes, (size_t)size);
         (void)waferhand_state_decode_cleanup(&message);
     }
-    assert_int_equal(only_run()->compared, 3);
-    assert_int_equal(only_run()->differing, 1);
+    assert_int_equal(only_run()->slices.compared, 3);
+    assert_int_equal(only_run()->slices.differing, 1);
     assert_int_equal(only_run()->difference.slice, 2);
     assert_string_equal(only_run()->difference.what, "Wafer 2, position y");
-    assert_int_equal(replay.losses[WH_REPLAY_UNCHECKED].count, 1);
+    assert_int_equal(replay.heard.losses[WH_REPLAY_UNCHECKED].count, 1);
 }
 
 /* Free-running: states come some commands later, and some commands never came. */
@@ -436,10 +436,11 @@ static void states_behind_later_commands(void **state) {
         }
     }
     const wh_replay_run_t *run = only_run();
-    assert_int_equal(run->compared, SLICES - missed);
-    assert_int_equal(run->differing, 0);
-    assert_int_equal(run->missed, missed);
-    assert_int_equal(run->unanswered + run->last_unanswered + run->taken_up + run->skipped, 0);
+    assert_int_equal(run->slices.compared, SLICES - missed);
+    assert_int_equal(run->slices.differing, 0);
+    assert_int_equal(run->slices.missed, missed);
+    assert_int_equal(
+        run->slices.unanswered + run->slices.last_unanswered + run->slices.taken_up + run->slices.skipped, 0);
 }
 
 static void a_state_that_is_missing_is_counted(void **state) {
@@ -452,10 +453,10 @@ static void a_state_that_is_missing_is_counted(void **state) {
             record_state();
         }
     }
-    assert_int_equal(only_run()->compared, 7);
-    assert_int_equal(only_run()->unanswered, 1);
-    assert_int_equal(only_run()->last_unanswered, 1);
-    assert_int_equal(only_run()->differing, 0);
+    assert_int_equal(only_run()->slices.compared, 7);
+    assert_int_equal(only_run()->slices.unanswered, 1);
+    assert_int_equal(only_run()->slices.last_unanswered, 1);
+    assert_int_equal(only_run()->slices.differing, 0);
 }
 
 static void messages_on_other_channels(void **state) {
@@ -466,7 +467,7 @@ static void messages_on_other_channels(void **state) {
     wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, (size_t)size);
     wh_replay_event(&replay, "WAFERHAND_ELSE", "12345678", 8);
     wh_replay_event(&replay, "SOMEBODY_ELSE", "12345678", 8);
-    assert_int_equal(replay.losses[WH_REPLAY_STRAY].count, 3);
+    assert_int_equal(replay.heard.losses[WH_REPLAY_STRAY].count, 3);
 }
 
 /* ------------------------------------------------------------------------------------------ event numbers */
@@ -742,7 +743,7 @@ static void damaged_logs_never_say_more_than_they_have(void **state) {
     for (version_t version = OF_SLICES; version < VERSIONS; ++version) {
         const wh_reading_verdict_t verdict = verdict_of(&whole[version], false);
         assert_int_equal(verdict, WH_READING_SAME);
-        assert_int_equal(replay.runs[0].compared, SLICES);
+        assert_int_equal(replay.runs[0].slices.compared, SLICES);
     }
     for (int i = 0; i < 1000 / WH_TEST_SHARE; ++i) {
         const version_t version = (version_t)wh_test_below(VERSIONS);
@@ -775,7 +776,7 @@ static void a_forged_state_differs_where_it_stands(void **state) {
             damaged.bytes[data + 100 + wh_test_below(80)] ^= 1;
             wh_link_seal(damaged.bytes + data, log->starts[event + 1] - data);
             assert_int_equal(verdict_of(&damaged, false), WH_READING_DIFFERS);
-            assert_int_equal(replay.runs[0].differing, 1);
+            assert_int_equal(replay.runs[0].slices.differing, 1);
         }
     }
 }
@@ -798,7 +799,7 @@ static void an_unknown_version_is_refused(void **state) {
     damaged.bytes[data + 43] = WH_RECORDING_OLDEST;
     wh_link_seal(damaged.bytes + data, log->starts[1] - data);
     assert_int_not_equal(verdict_of(&damaged, false), WH_READING_UNUSABLE);
-    assert_int_equal(replay.runs[0].differing, 0);
+    assert_int_equal(replay.runs[0].slices.differing, 0);
 }
 
 /* One bit of the cell alone: the slices may be unchanged. */
@@ -826,7 +827,7 @@ static void a_log_that_is_not_closed_is_cut(void **state) {
         copy_whole(log);
         damaged.size = log->starts[log->count - 1];
         assert_int_equal(verdict_of(&damaged, false), WH_READING_CUT);
-        assert_int_equal(replay.runs[0].compared, SLICES);
+        assert_int_equal(replay.runs[0].slices.compared, SLICES);
         damaged.size += 30;
         assert_int_equal(verdict_of(&damaged, true), WH_READING_CUT);
     }
@@ -923,11 +924,13 @@ static void a_run_that_goes_on_from_an_earlier_state_is_whole(void **state) {
     (void)keep_two_runs();
     replay_without(0, 0);
     const wh_replay_run_t *again = &replay.runs[1];
-    assert_int_equal(replay.runs[0].compared, SAVED + 20);
+    assert_int_equal(replay.runs[0].slices.compared, SAVED + 20);
     assert_int_equal(again->goes_on_from, RUN);
     assert_int_equal(again->first_slice, SAVED);
-    assert_int_equal(again->compared, 30);
-    assert_int_equal(again->differing + again->skipped + again->taken_up + again->unanswered, 0);
+    assert_int_equal(again->slices.compared, 30);
+    assert_int_equal(again->slices.differing + again->slices.skipped + again->slices.taken_up +
+                         again->slices.unanswered,
+                     0);
     assert_true(again->hash == wh_protocol_server_hash(&server));
     let_events_go();
 }
@@ -938,18 +941,18 @@ static void what_goes_on_from_no_known_state_has_lost_slices(void **state) {
     const size_t begins = keep_two_runs();
     replay_without(begins, begins + 1);
     assert_int_equal(replay.runs[1].goes_on_from, 0);
-    assert_int_equal(replay.runs[1].skipped, SAVED + 1);
-    assert_int_equal(replay.runs[1].taken_up, 1);
+    assert_int_equal(replay.runs[1].slices.skipped, SAVED + 1);
+    assert_int_equal(replay.runs[1].slices.taken_up, 1);
     const size_t earlier = 2 * (SAVED - 5);
     replay_without(earlier, earlier + 20);
-    assert_true(replay.runs[0].skipped > 0);
+    assert_true(replay.runs[0].slices.skipped > 0);
     assert_int_equal(replay.runs[1].goes_on_from, 0);
-    assert_int_equal(replay.runs[1].skipped, SAVED);
-    assert_int_equal(replay.runs[1].taken_up, 1);
+    assert_int_equal(replay.runs[1].slices.skipped, SAVED);
+    assert_int_equal(replay.runs[1].slices.taken_up, 1);
     replay_without(begins + 1, begins + 7);
     assert_int_equal(replay.runs[1].goes_on_from, RUN);
-    assert_int_equal(replay.runs[1].skipped, 4);
-    assert_int_equal(replay.runs[1].taken_up, 1);
+    assert_int_equal(replay.runs[1].slices.skipped, 4);
+    assert_int_equal(replay.runs[1].slices.taken_up, 1);
     let_events_go();
 }
 
@@ -969,7 +972,7 @@ static void another_state_of_the_same_slice_is_no_earlier_one(void **state) {
     (void)waferhand_state_decode_cleanup(&message);
     replay_without(0, 0);
     assert_int_equal(replay.runs[1].goes_on_from, 0);
-    assert_true(replay.runs[1].skipped >= SAVED);
+    assert_true(replay.runs[1].slices.skipped >= SAVED);
     let_events_go();
 }
 

@@ -244,12 +244,12 @@ static void a_map_sees_what_is_where_it_sweeps(void **state) {
 static void a_robots_own_controller_knows_no_other(void **state) {
     (void)state;
     open_cell("lua/layouts/two_robots.lua");
-    session.mcs.asker.robot = 1;
+    session.mcs.wanted.asker.robot = 1;
     assert_begins("STATION IN", "OK station=IN");
     assert_begins("STATION IN robot=VAC", "ERROR 92 NO_SUCH_ROBOT");
     assert_begins("STATION IN gripper=\"VAC blade\"", "ERROR 45 NO_SUCH_GRIPPER");
     assert_begins("STATION PM", "ERROR 48 BAD_ARGUMENT");
-    session.mcs.asker.robot = 0;
+    session.mcs.wanted.asker.robot = 0;
     assert_begins("STATION PM", "OK station=PM");
     wh_session_close(&session);
 }
