@@ -99,7 +99,7 @@ static bool choose_stations(const arguments_t *arguments, const wh_layout_t *lay
     return true;
 }
 
-static void tell(void *user, const char *what, size_t done, size_t total) {
+static void tell_progress(void *user, const char *what, size_t done, size_t total) {
     wh_teller_tell(user, what, done, total);
 }
 
@@ -113,7 +113,7 @@ static int find(const arguments_t *arguments, const wh_study_t *study, const boo
         .samples = arguments->samples,
         .seed = arguments->seed,
         .wanted = arguments->stations.count > 0 ? wanted : NULL,
-        .tell = tell,
+        .tell = tell_progress,
         .user = &teller,
         .is_enough = wh_interrupt_came};
     wh_budget_t budget;

@@ -22,7 +22,7 @@ typedef struct {
     wh_option_list_t paths;
 } arguments_t;
 
-static void check(const void *given, struct argp_state *state) {
+static void check_arguments_of_check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->paths.count != 2) {
         argp_error(state, "by what is %s checked? (expected a log and a file of checks)",
@@ -43,7 +43,7 @@ static const wh_command_line_t command_line = {
     .operand = "file",
     .operand_variable = offsetof(arguments_t, paths),
     .operands = 2,
-    .check = check};
+    .check = check_arguments_of_check};
 
 /* The run as the checks see it. */
 typedef struct {
@@ -331,7 +331,7 @@ static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox
 /* -------------------------------------------------------------------------------------------- the verdict */
 
 /* A log that is not whole cannot show that all went well. */
-static int judge(const arguments_t *arguments, const checked_t *checked) {
+static int judge_checked(const arguments_t *arguments, const checked_t *checked) {
     const int whole = wh_log_arguments_judge(&arguments->log, &checked->run);
     if (checked->expected == 0) {
         fprintf(stderr, "%s: it expects nothing (expected calls of expect)\n", checked->path);
@@ -357,7 +357,7 @@ static int play(const arguments_t *arguments, checked_t *checked) {
     if (!wh_log_arguments_check_set(&checked->run, checked->sandbox)) {
         return WH_EXIT_USAGE;
     }
-    const int status = judge(arguments, checked);
+    const int status = judge_checked(arguments, checked);
     return wh_app_is_printed(0) ? status : WH_EXIT_USAGE;
 }
 

@@ -34,7 +34,7 @@ typedef struct {
     bool shows_one_run;
 } heads_t;
 
-static bool refuse(const wh_transcript_t *played, size_t line, const char *what) {
+static bool refuse_line(const wh_transcript_t *played, size_t line, const char *what) {
     fprintf(stderr, "%s:%zu: %s\n", played->path, line, what);
     return false;
 }
@@ -55,12 +55,12 @@ static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
         } else if (strcmp(head->name, "shows") == 0 && strcmp(head->text, "one run") == 0) {
             heads->shows_one_run = true;
         } else if (strcmp(head->name, "port") != 0 && !is_of_port(played, i)) {
-            return refuse(
+            return refuse_line(
                 played, head->line,
                 "no such head (expected layout, set, shows \"one run\", port, or mechanism behind its port)");
         }
     }
-    return heads->layout || refuse(played, 1, "no layout (expected a head: layout \"FILE\")");
+    return heads->layout || refuse_line(played, 1, "no layout (expected a head: layout \"FILE\")");
 }
 
 /* The mechanism of the port of this head, from a head `mechanism "NAME"` behind it; null: there is none. */
@@ -88,7 +88,7 @@ static bool add_ports(wh_host_t *host) {
             continue;
         }
         if (!file || at == WH_HOST_CONTROLLERS) {
-            return refuse(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
+            return refuse_line(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
         }
         const wh_host_port_t port = {.dialect = file + 1, .mechanism = mechanism_of(played, i)};
         if (at == host->count && !add_port(host, &port)) {
@@ -97,7 +97,7 @@ static bool add_ports(wh_host_t *host) {
         }
         const char *name = host->controllers[at++]->name;
         if (strncmp(name, head->text, strlen(name)) != 0 || head->text[strlen(name)] != ' ') {
-            return refuse(played, head->line, "the dialect is of another mechanism than its port");
+            return refuse_line(played, head->line, "the dialect is of another mechanism than its port");
         }
     }
     return true;
@@ -114,11 +114,11 @@ static bool check_entries(const wh_host_t *host) {
             is_known = is_known || strcmp(host->controllers[c]->name, played->entries[i].port) == 0;
         }
         if (!is_known) {
-            return refuse(played, played->entries[i].line, "no such port (expected one of the heads)");
+            return refuse_line(played, played->entries[i].line, "no such port (expected one of the heads)");
         }
     }
     return is_any_heard ||
-           refuse(played, 1, "nothing to compare (expected a frame of a controller's, a line with <)");
+           refuse_line(played, 1, "nothing to compare (expected a frame of a controller's, a line with <)");
 }
 
 static int play(wh_host_t *host) {

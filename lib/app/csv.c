@@ -116,7 +116,7 @@ static bool write_table(table_t *table, wh_log_run_t *run) {
     return write_rows(table, stdout, run) && wh_app_is_printed(0);
 }
 
-static int judge(const arguments_t *arguments, const wh_log_run_t *run) {
+static int judge_log(const arguments_t *arguments, const wh_log_run_t *run) {
     if (!run->cell.is_whole) {
         fprintf(stderr, "%s: %s: what the log itself does not tell of the cell is left out, or empty\n",
                 arguments->log.path, run->cell.note);
@@ -134,7 +134,7 @@ int wh_app_csv(int argc, char **argv) {
     table_t table = {.arguments = &arguments, .run = &run};
     int status = WH_EXIT_USAGE;
     if (wh_files_are_apart(named, 3, !arguments.output) && write_table(&table, &run)) {
-        status = judge(&arguments, &run);
+        status = judge_log(&arguments, &run);
     }
     wh_slices_csv_close(&table.csv);
     wh_log_run_close(&run);

@@ -17,7 +17,7 @@ static const wh_option_t options[] = {{"output", 'o', "FILE",
 
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
 
-static void check(const void *given, struct argp_state *state) {
+static void check_definitions_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->operand) {
         argp_error(state, "%s: one argument too many (expected none)", arguments->operand);
@@ -34,7 +34,7 @@ static const wh_command_line_t command_line = {
     .operand = "argument",
     .operand_variable = offsetof(arguments_t, operand),
     .operand_may_lack = true,
-    .check = check};
+    .check = check_definitions_arguments};
 
 static bool write_text(void *text, FILE *out) {
     return fputs(text, out) != EOF;

@@ -29,14 +29,14 @@ static const wh_option_t options[] = {
      WH_OPTION_LIST, .variable = offsetof(arguments_t, parameters)},
     {0}};
 
-static void check(const void *given, struct argp_state *state) {
+static void check_diff_arguments(const void *given, struct argp_state *state) {
     if (((const arguments_t *)given)->paths.count != 2) {
         argp_error(state, "with what is %s compared? (expected two files)",
                    ((const arguments_t *)given)->paths.items[0]);
     }
 }
 
-static const wh_option_table_t tables[] = {{options, 0, NULL, check}, {0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, check_diff_arguments}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "diff",

@@ -49,7 +49,7 @@ static const wh_option_table_t all_tables[] = {{all_options, 0, NULL, NULL}, {0}
 
 /* --------------------------------------------------------------------------------------- what is fitted */
 
-static int refuse(const wh_csv_t *csv, wh_status_t status) {
+static int refuse_table(const wh_csv_t *csv, wh_status_t status) {
     fprintf(stderr, "%s: error %d %s\n", csv->message, (int)status, wh_status_name(status));
     return WH_EXIT_USAGE;
 }
@@ -68,7 +68,7 @@ static int fit_frames(const arguments_t *arguments) {
     const wh_status_t status = wh_point_table_open(&table, arguments->path);
     int ends;
     if (status != WH_OK) {
-        ends = refuse(&table.csv, status);
+        ends = refuse_table(&table.csv, status);
     } else {
         const bool told = wh_point_table_estimate(&table);
         ends = conclude(arguments->json ? wh_frames_print_json(&table, stdout)
@@ -85,7 +85,7 @@ static int fit_limits(const arguments_t *arguments) {
     const wh_status_t status = wh_move_table_open(&table, arguments->path);
     int ends;
     if (status != WH_OK) {
-        ends = refuse(&table.csv, status);
+        ends = refuse_table(&table.csv, status);
     } else {
         const bool told = wh_move_table_estimate(&table, arguments->delay);
         ends = conclude(arguments->json ? wh_limits_print_json(&table, stdout)
@@ -102,7 +102,7 @@ static int fit_robot(const arguments_t *arguments) {
     const wh_status_t status = wh_touch_table_open(&table, arguments->path);
     int ends;
     if (status != WH_OK) {
-        ends = refuse(&table.csv, status);
+        ends = refuse_table(&table.csv, status);
     } else {
         const bool told = wh_touch_table_estimate(&table, arguments->scales);
         ends = conclude(arguments->json ? wh_geometry_print_json(&table, stdout)

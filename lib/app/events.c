@@ -57,7 +57,7 @@ static bool is_of_log(const wh_log_arguments_t *log) {
            log->more.then.count > 0;
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_events_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     const bool of_log = is_of_log(&arguments->log);
     if (!arguments->lcm && !arguments->log.path) {
@@ -85,7 +85,7 @@ static const wh_command_line_t command_line = {
     .operand = "log",
     .operand_variable = offsetof(arguments_t, log.path),
     .operand_may_lack = true,
-    .check = check};
+    .check = check_events_arguments};
 
 /* True if the cell has these wafers, and may have events of these kinds; `whose` cell it is. */
 static bool fits(const arguments_t *arguments, const wh_told_layout_t *cell, const char *whose) {

@@ -59,7 +59,7 @@ static void tell_run(ear_t *ear, int64_t before, int64_t utime) {
     }
 }
 
-static void tell(ear_t *ear, const wh_state_t *state) {
+static void tell_state(ear_t *ear, const wh_state_t *state) {
     ear->record.layout = ear->cell.layout;
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_seat_t seat = wh_seat_of(ear->cell.layout, state, &state->events[i]);
@@ -82,7 +82,7 @@ static void on_state(void *user, const void *data, size_t size) {
     if (ear->cell.layout && ear->cell.hash == (uint64_t)message.layout_hash && message.seq > 0 &&
         wh_link_state_is_sound(&message, ear->cell.layout, &ear->arrays, &state) && is_news(ear, &message)) {
         tell_run(ear, runs, state.utime);
-        tell(ear, &state);
+        tell_state(ear, &state);
     }
     (void)waferhand_state_decode_cleanup(&message);
 }

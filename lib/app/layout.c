@@ -113,7 +113,7 @@ static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
     return check->wrong > 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
-static void tell(void *user, const char *what, size_t done, size_t total) {
+static void tell_progress(void *user, const char *what, size_t done, size_t total) {
     wh_teller_tell(user, what, done, total);
 }
 
@@ -123,7 +123,7 @@ static bool survey(const arguments_t *arguments, const wh_layout_t *layout, wh_f
     wh_survey_t *planned = wh_array_new(1, sizeof *planned);
     wh_teller_t teller;
     wh_teller_begin(&teller, "layout");
-    planned->tell = tell;
+    planned->tell = tell_progress;
     planned->user = &teller;
     const bool good = wh_survey_open(planned, arguments->layout.sandbox, layout, check, &result);
     wh_teller_end(&teller);

@@ -60,7 +60,7 @@ static void take_help(int *argc, char *argv[]) {
     }
 }
 
-static void refuse(const char *word) {
+static void refuse_subcommand(const char *word) {
     const char *names[SUBCOMMANDS + 2] = {[SUBCOMMANDS] = "--help", [SUBCOMMANDS + 1] = "--version"};
     for (size_t i = 0; i < SUBCOMMANDS; ++i) {
         names[i] = subcommands[i].name;
@@ -94,6 +94,6 @@ int main(int argc, char **argv) {
             return subcommands[i].act(argc - 1, argv + 1);
         }
     }
-    refuse(argv[1]);
+    refuse_subcommand(argv[1]);
     return WH_EXIT_USAGE;
 }

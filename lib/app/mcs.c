@@ -52,7 +52,7 @@ static bool wants_run(const wh_run_arguments_t *run) {
     return run->json || wh_run_table_wanted(run) || run->segments_path || wh_run_files_wanted(&run->files);
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_mcs_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (!arguments->run.run.script && !arguments->layout) {
         argp_error(state, "which script, or which --layout?");
@@ -83,7 +83,7 @@ static const wh_command_line_t command_line = {
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
     .operand_may_lack = true,
-    .check = check};
+    .check = check_mcs_arguments};
 
 /* --------------------------------------------------------------------------------------------- the prompt */
 

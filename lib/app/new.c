@@ -55,7 +55,7 @@ static const char *find_needless(const wh_new_cell_t *cell) {
     return cell->modules != NONE ? "--modules" : cell->locks != NONE ? "--locks" : NULL;
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_new_arguments(const void *given, struct argp_state *state) {
     const wh_new_cell_t *cell = &((const arguments_t *)given)->cell;
     const char *needless = find_needless(cell);
     if (needless) {
@@ -77,7 +77,7 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "name",
     .operand_variable = offsetof(arguments_t, folder),
-    .check = check};
+    .check = check_new_arguments};
 
 /* ----------------------------------------------------------------------------------------------- asking */
 

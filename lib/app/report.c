@@ -33,7 +33,7 @@ static const wh_option_table_t tables[] = {
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
-static void check(const void *given, struct argp_state *state) {
+static void check_report_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (!arguments->run.run.script) {
         argp_error(state, "of which run?");
@@ -59,7 +59,7 @@ static const wh_command_line_t command_line = {
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
     .operand_may_lack = true,
-    .check = check};
+    .check = check_report_arguments};
 
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;

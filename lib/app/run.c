@@ -78,7 +78,7 @@ static void check_page(const arguments_t *arguments, struct argp_state *state) {
     }
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_run_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->url && !arguments->lcm) {
         argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
@@ -92,7 +92,7 @@ static void check(const void *given, struct argp_state *state) {
 }
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check},
+    {options, 0, NULL, check_run_arguments},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},

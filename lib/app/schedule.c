@@ -28,7 +28,7 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, json)},
     {0}};
 
-static void check(const void *given, struct argp_state *state) {
+static void check_schedule_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->play && !arguments->layout.path) {
         argp_error(state, "--play: no cell to play it in (goes with --layout)");
@@ -38,8 +38,9 @@ static void check(const void *given, struct argp_state *state) {
     }
 }
 
-static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check}, {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, check_schedule_arguments},
+                                           {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
+                                           {0}};
 
 static const wh_command_line_t command_line = {
     .name = "schedule",

@@ -53,7 +53,7 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, coverage)},
     {0}};
 
-static void check(const void *given, struct argp_state *state) {
+static void check_serve_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     const size_t ports = arguments->tcp.count + arguments->pty.count;
     if (arguments->dialects.count == 0) {
@@ -70,7 +70,7 @@ static void check(const void *given, struct argp_state *state) {
 }
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check},
+    {options, 0, NULL, check_serve_arguments},
     {wh_serve_beside_options, offsetof(arguments_t, beside), NULL, NULL},
     {wh_serve_cell_options, offsetof(arguments_t, cell), NULL, wh_serve_cell_check},
     {wh_record_options, offsetof(arguments_t, cell.record), NULL, wh_record_arguments_check},

@@ -79,7 +79,7 @@ static void check_one(const arguments_t *arguments, struct argp_state *state) {
     }
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_study_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->trial != NO_TRIAL) {
         check_one(arguments, state);
@@ -104,7 +104,7 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
-    .check = check};
+    .check = check_study_arguments};
 
 /* ---------------------------------------------------------------------------------------------- the study */
 

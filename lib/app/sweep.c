@@ -67,7 +67,7 @@ static void check_alone(const arguments_t *arguments, struct argp_state *state, 
     }
 }
 
-static void check(const void *filled, struct argp_state *state) {
+static void check_sweep_arguments(const void *filled, struct argp_state *state) {
     const arguments_t *arguments = filled;
     if (arguments->by && read_percent(arguments->by) < 0) {
         argp_error(state, "--by: %s (expected percent, 0.01 to 90)", arguments->by);
@@ -77,7 +77,7 @@ static void check(const void *filled, struct argp_state *state) {
     }
 }
 
-static const wh_option_table_t tables[] = {{options, 0, NULL, check}, {0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, check_sweep_arguments}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "sweep",

@@ -61,7 +61,7 @@ static bool read_shard(const char *text, size_t *part, size_t *parts) {
            *parts <= 9999;
 }
 
-static void check(const void *given, struct argp_state *state) {
+static void check_test_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     size_t part;
     size_t parts;
@@ -79,7 +79,7 @@ static const wh_command_line_t command_line = {
     .operand = "script or folder",
     .operand_variable = offsetof(arguments_t, paths),
     .operands = SIZE_MAX,
-    .check = check};
+    .check = check_test_arguments};
 
 /* ------------------------------------------------------------------------------------------------ results */
 
@@ -124,7 +124,7 @@ static bool write_hashes(void *user, FILE *out) {
     return fflush(out) == 0 && !ferror(out);
 }
 
-static int judge(const wh_test_result_t results[], size_t count, size_t scripts) {
+static int judge_results(const wh_test_result_t results[], size_t count, size_t scripts) {
     int status = WH_EXIT_MET;
     for (size_t i = 0; i < count; ++i) {
         if (results[i].verdict == WH_TEST_BAD) {
@@ -162,7 +162,7 @@ static int play(const arguments_t *arguments, const wh_test_found_t *found) {
         } else {
             wh_test_print_sum(suite.results, suite.count, stdout, &printer.style);
         }
-        status = judge(suite.results, suite.count, printer.scripts);
+        status = judge_results(suite.results, suite.count, printer.scripts);
         if (!wh_file_write("--junit", arguments->junit, write_junit, &suite, NULL) ||
             !wh_file_write("--hashes", arguments->hashes, write_hashes, &suite, NULL) ||
             !wh_app_is_printed(0)) {

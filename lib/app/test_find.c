@@ -81,7 +81,7 @@ void wh_test_found_free(wh_test_found_t *found) {
     free(found->jobs);
 }
 
-static bool refuse(const char *path, const char *why) {
+static bool refuse_path(const char *path, const char *why) {
     fprintf(stderr, "%s: %s (expected a script, or a folder of scripts)\n", path, why);
     return false;
 }
@@ -110,9 +110,10 @@ static bool look_at(wh_test_found_t *found, const char *folder, const char *name
     if (lstat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
         taken = search(found, path, depth + 1);
     } else if (is_lua(name) && stat(path, &status) != 0) {
-        taken = refuse(path, strerror(errno));
+        taken = refuse_path(path, strerror(errno));
     } else if (is_lua(name) && !S_ISREG(status.st_mode)) {
-        taken = refuse(path, S_ISDIR(status.st_mode) ? "it is a link to a folder" : "it is no regular file");
+        taken =
+            refuse_path(path, S_ISDIR(status.st_mode) ? "it is a link to a folder" : "it is no regular file");
     } else if (is_lua(name)) {
         wh_test_found_add(found, path, true);
     }
@@ -125,7 +126,7 @@ static bool search(wh_test_found_t *found, const char *folder, int depth) {
     const int count = depth > DEEPEST ? -1 : scandir(folder, &entries, is_shown, by_name);
     bool taken = count >= 0;
     if (!taken) {
-        (void)refuse(folder, depth > DEEPEST ? "it is too deep" : strerror(errno));
+        (void)refuse_path(folder, depth > DEEPEST ? "it is too deep" : strerror(errno));
     }
     for (int i = 0; i < count; ++i) {
         taken = taken && look_at(found, folder, entries[i]->d_name, depth);
@@ -140,12 +141,12 @@ bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) {
     for (size_t i = 0; taken && i < paths->count; ++i) {
         struct stat status;
         if (stat(paths->items[i], &status) != 0) {
-            taken = refuse(paths->items[i], strerror(errno));
+            taken = refuse_path(paths->items[i], strerror(errno));
         } else if (S_ISDIR(status.st_mode)) {
             const size_t before = found->named;
             taken = search(found, paths->items[i], 0);
             if (taken && found->named == before) {
-                taken = refuse(paths->items[i], "no scripts found");
+                taken = refuse_path(paths->items[i], "no scripts found");
             }
         } else {
             wh_test_found_add(found, paths->items[i], false);

@@ -58,8 +58,8 @@ static uint64_t count_errors(const wh_record_t *record) {
     return errors;
 }
 
-static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, const wh_test_job_t *job,
-                  bool needs_expectations, told_t *told) {
+static void judge_script(const wh_script_run_t *run, wh_script_run_outcome_t outcome,
+                         const wh_test_job_t *job, bool needs_expectations, told_t *told) {
     const wh_record_t *record = &run->record;
     if (outcome == WH_RUN_BAD_INPUT) {
         told->verdict = job->was_found && run->is_no_script ? WH_TEST_PASSED_OVER : WH_TEST_BAD;
@@ -92,7 +92,7 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     options.script = job->path;
     options.limits.print_to = stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &options);
-    judge(&run, outcome, job, crew->options->needs_expectations, &told);
+    judge_script(&run, outcome, job, crew->options->needs_expectations, &told);
     told.hash = run.record.hash;
     told.expectations = run.record.expectation_count;
     told.errors = count_errors(&run.record);
@@ -139,7 +139,7 @@ static FILE *make_ends(int ends[2]) {
     return output;
 }
 
-static bool begin(crew_t *crew, player_t *player) {
+static bool begin_job(crew_t *crew, player_t *player) {
     int ends[2] = {-1, -1};
     const pid_t parent = getpid();
     *player = (player_t){.job = crew->begun, .begin = wh_clock_seconds()};
@@ -220,7 +220,7 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
     }
 }
 
-static void tell(crew_t *crew) {
+static void tell_results(crew_t *crew) {
     while (crew->told < crew->count && crew->is_done[crew->told]) {
         crew->options->listener(crew->options->user, &crew->results[crew->told++]);
     }
@@ -244,7 +244,7 @@ static void end(crew_t *crew, player_t *player, int status) {
     player->pid = 0;
     crew->is_done[player->job] = true;
     ++crew->ended;
-    tell(crew);
+    tell_results(crew);
 }
 
 /* Takes the results of ended scripts, and ends late ones. Returns the seconds until the next one is late. */
@@ -282,7 +282,7 @@ static void play_all(crew_t *crew, const sigset_t *children) {
     const size_t most = crew->options->processes;
     while (!crew->failed && crew->ended < crew->count) {
         for (size_t i = 0; !crew->failed && i < most && crew->begun < crew->count; ++i) {
-            crew->failed = crew->players[i].pid == 0 && !begin(crew, &crew->players[i]);
+            crew->failed = crew->players[i].pid == 0 && !begin_job(crew, &crew->players[i]);
         }
         const size_t before = crew->ended;
         const double wait = look(crew);

@@ -124,7 +124,7 @@ __attribute__((noreturn)) static void carry_out(const watch_t *watch, int mouth,
 
 /* ---------------------------------------------------------------------------------------- in the parent */
 
-static bool begin(watch_t *watch) {
+static bool begin_round(watch_t *watch) {
     int ends[2];
     const pid_t parent = getpid();
     if (pipe(ends) != 0) {
@@ -258,7 +258,7 @@ static bool look_at_files(watch_t *watch) {
     }
     fprintf(stderr, "\nwatch: %s has changed\n", changed);
     give_up(watch);
-    return begin(watch);
+    return begin_round(watch);
 }
 
 /* True if a signal came that ends the watch. */
@@ -305,7 +305,7 @@ int wh_watch(const wh_watch_options_t *options) {
     (void)sigprocmask(SIG_BLOCK, &wanted, &before);
     watch.events = inotify_init1(IN_CLOEXEC);
     watch.signals = signalfd(-1, &wanted, SFD_CLOEXEC);
-    const bool good = watch.events >= 0 && watch.signals >= 0 && begin(&watch) && go_on(&watch);
+    const bool good = watch.events >= 0 && watch.signals >= 0 && begin_round(&watch) && go_on(&watch);
     if (!good) {
         fprintf(stderr, "--watch: %s\n", strerror(errno));
     }

@@ -27,7 +27,7 @@ static void mark_corners(qhT *qh, bool is_corner[]) {
 }
 
 /* The first line of libqhull's messages. */
-static void tell(const char *said, char *message, size_t size) {
+static void tell_qhull(const char *said, char *message, size_t size) {
     const size_t length = strcspn(said, "\n");
     (void)snprintf(message, size, "%.*s", (int)length, said);
 }
@@ -75,7 +75,7 @@ bool wh_hull_reduce(wh_vec3_t points[], size_t *count, char *message, size_t siz
     if (good) {
         *count = keep(points, *count, is_corner);
     } else {
-        tell(text, message, size);
+        tell_qhull(text, message, size);
     }
     free(text);
     free(numbers);

@@ -298,7 +298,7 @@ static bool check_facet(stl_t *stl, size_t facet, const wh_vec3_t *points, size_
     return true;
 }
 
-static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
+static bool check_points(stl_t *stl, const wh_vec3_t *points, size_t count) {
     if (!stl->any_body && count > WH_STL_POINTS) {
         return refuse(stl, ": %zu different corners (expected at most %d)", count, WH_STL_POINTS);
     }
@@ -339,7 +339,7 @@ static bool parse(stl_t *stl, const char *bytes, size_t length, wh_vec3_t **poin
     if (good) {
         size_t found = 0;
         wh_vec3_t *mine = different(stl->corners, 3 * stl->facets, &found);
-        good = check(stl, mine, found);
+        good = check_points(stl, mine, found);
         if (good) {
             *points = mine;
             *count = found;

@@ -11,10 +11,6 @@ const char *wh_clock_kind_name(wh_clock_kind_t kind) {
     return (unsigned)kind < WH_CLOCK_KINDS ? names[kind] : "unknown";
 }
 
-const char *wh_clock_side_name(wh_flow_side_t side) {
-    return side == WH_FLOW_VACUUM ? "vacuum" : "atmosphere";
-}
-
 const char *wh_clock_phase_name(wh_clock_phase_t phase) {
     static const char *const names[] = {"empty", "waiting", "processing", "cleaning", "done"};
     return names[phase];

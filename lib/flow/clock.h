@@ -99,9 +99,6 @@ typedef struct {
 /* "process_begins" and so on; never null. */
 const char *wh_clock_kind_name(wh_clock_kind_t kind);
 
-/* "atmosphere" or "vacuum". */
-const char *wh_clock_side_name(wh_flow_side_t side);
-
 /* "empty", "waiting", "processing", "cleaning" or "done". */
 const char *wh_clock_phase_name(wh_clock_phase_t phase);
 

@@ -6,6 +6,8 @@
 #include "../math/hash.h"
 #include "../text/array.h"
 
+const char *const wh_flow_side_words[] = {"atmosphere", "vacuum", NULL};
+
 void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count) {
     const size_t pairs = robot_count * station_count;
     *tool = (wh_flow_tool_t){

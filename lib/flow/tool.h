@@ -25,6 +25,9 @@
 /* Two pressures, and what a robot or a slot without a side has. */
 typedef enum { WH_FLOW_ATMOSPHERE, WH_FLOW_VACUUM, WH_FLOW_BOTH } wh_flow_side_t;
 
+/* The pressures' words, in this order, and a null for WH_FLOW_BOTH, which also ends the list. */
+extern const char *const wh_flow_side_words[];
+
 /* The work on a wafer in a step, beside its process. In cells with axes alone. */
 typedef enum {
     WH_FLOW_WORK_NONE,

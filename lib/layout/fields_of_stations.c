@@ -65,20 +65,17 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"via", "waferhand.via[]", "where the arm passes on its way there, and back on its way away", false},
     {"by", "table<string, waferhand.approach>", "with several robots: those that serve it, by name", false,
      .otherwise = "those that come there"},
-    {"process", NUMBER, "s, from when the wafer lies there, the blade is out and its doors are shut", false},
-    {"window", NUMBER, "s: the longest stay after the process", false},
-    {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},
-    {"pump", "waferhand.lock", "makes it a load lock", false},
+    STATION_TIMES(", the blade is out and its doors are shut", "waferhand.lock"),
     {"port", "waferhand.port", "of a load port: its steps and their times", false},
-    {"state", "\"vacuum\"|\"atmosphere\"", "of a load lock when a run begins; atmosphere", false},
-    {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock: where the one robot comes", false},
+    {"side", WORD, "of a load lock: where the one robot comes", false, APART_WORD(ASKED, wh_flow_side_words)},
     END};
 
 const wh_reader_field_t wh_layout_clean_fields[] = {
-    {"after", "integer", "wafers, at least 1", false},
-    {"idle", NUMBER, "s without a wafer, above 0", false},
-    {"seconds", NUMBER, "s: how long it takes, above 0", true},
-    {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside; true", false},
+    {"after", "integer", "wafers", false, APART(1, 1000000, ASKED)},
+    {"idle", NUMBER, "s without a wafer", false, SECONDS_ABOVE_0(ASKED)},
+    {"seconds", NUMBER, "s: how long it takes", true, SECONDS_ABOVE_0(ASKED)},
+    {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside", false,
+     APART_SWITCH(true)},
     END};
 
 /* The longest time of a load port's step, s. */
@@ -138,9 +135,13 @@ const wh_reader_field_t wh_layout_carrier_fields[] = {
     END};
 
 #define PUMP_TIMES                                                                                           \
-    {"down", NUMBER, "s to vacuum, above 0", true}, {"up", NUMBER, "s to atmosphere, above 0", true},        \
-        {"empty_down", NUMBER, "s to vacuum without a wafer; down", false}, {                                \
-        "empty_up", NUMBER, "s to atmosphere without a wafer; up", false                                     \
+    {"down", NUMBER, "s to vacuum", true, SECONDS_ABOVE_0(ASKED)},                                           \
+        {"up", NUMBER, "s to atmosphere", true, SECONDS_ABOVE_0(ASKED)},                                     \
+        {"empty_down",       NUMBER, "s to vacuum without a wafer", false, SECONDS_ABOVE_0(FOLLOWS),         \
+         .otherwise = "down"},                                                                               \
+    {                                                                                                        \
+        "empty_up", NUMBER, "s to atmosphere without a wafer", false, SECONDS_ABOVE_0(FOLLOWS),              \
+            .otherwise = "up"                                                                                \
     }
 
 const wh_reader_field_t wh_layout_pump_fields[] = {PUMP_TIMES, END};
@@ -164,7 +165,7 @@ const wh_reader_field_t wh_layout_approach_fields[] = {
      .otherwise = "the robot's"},
     {"door", "string", "the door through which it comes, by name", false, .otherwise = "the station's"},
     {"via", "waferhand.via[]", "where it passes on its way there, and back on its way away", false},
-    {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock: where it comes", false},
+    {"side", WORD, "of a load lock: where it comes", false, APART_WORD(ASKED, wh_flow_side_words)},
     END};
 
 const wh_reader_field_t wh_layout_axes_fields[] = {

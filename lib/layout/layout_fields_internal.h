@@ -4,6 +4,7 @@
 
 #include "layout.h"
 #include "layout_fields.h"
+#include "times.h"
 #include "words.h"
 
 #define NUMBER "number"
@@ -26,6 +27,18 @@
 #define APART(least, most, usual) WH_SCALAR_APART, 0, least, most, usual
 #define APART_SWITCH(usual) WH_SCALAR_APART, 0, 0, 1, usual
 #define APART_WORD(usual, words) WH_SCALAR_APART, 0, 0, 0, usual, words
+/* A time, in the table's s; and one that is not 0: what repeats in no time would do so for ever. */
+#define SECONDS(usual) APART(0, WH_LAYOUT_LONGEST_S, usual)
+#define SECONDS_ABOVE_0(usual) APART(1e-6, WH_LAYOUT_LONGEST_S, usual)
+/* The fields of a station that takes time, in a cell with axes and in one of times alone. */
+#define STATION_TIMES(since, lock)                                                                           \
+    {"process", NUMBER, "s, from when the wafer lies there" since, false, SECONDS(0)},                       \
+        {"window", NUMBER,           "s: the longest stay after the process",                                \
+         false,    SECONDS(FOLLOWS), .otherwise = "any"},                                                    \
+        {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},        \
+        {"pump", lock, "makes it a load lock", false}, {                                                     \
+        "state", WORD, "of a load lock when a run begins", false, APART_WORD(0, wh_flow_side_words)          \
+    }
 /* How errors are spread: as the study says, or the table for all. */
 #define SHAPE APART_WORD(FOLLOWS, wh_layout_shape_words), .otherwise = "that of the study"
 #define ASKED WH_FIELD_FOLLOWS /* there is no default */

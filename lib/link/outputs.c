@@ -19,7 +19,7 @@
 #define FILE_EVENTS (IN_MODIFY | IN_CLOSE_WRITE | IN_ATTRIB | IN_CREATE | IN_DELETE | IN_MOVE)
 #define FOLDER_EVENTS (IN_DELETE_SELF | IN_MOVE_SELF)
 
-static int refuse(const char *path, const int32_t *valves, size_t count) {
+static int refuse_file(const char *path, const int32_t *valves, size_t count) {
     if (path == NULL || valves == NULL || count < 1 || count > WH_GRIPPERS || path[0] == '\0' ||
         path[strlen(path) - 1] == '/') {
         return EINVAL;
@@ -33,7 +33,7 @@ static int refuse(const char *path, const int32_t *valves, size_t count) {
 }
 
 int wh_outputs_open(wh_outputs_t *outputs, const char *path, const int32_t *valves, size_t count) {
-    const int refused = outputs == NULL ? EINVAL : refuse(path, valves, count);
+    const int refused = outputs == NULL ? EINVAL : refuse_file(path, valves, count);
     if (refused != 0) {
         return refused;
     }
@@ -253,7 +253,7 @@ static bool has_settled(wh_outputs_t *outputs, bool moved, int64_t now_us) {
 }
 
 /* Decides whether the finding in force changes. */
-static unsigned judge(wh_outputs_t *outputs, const wh_outputs_look_t *look, bool moved, int64_t now_us) {
+static unsigned judge_look(wh_outputs_t *outputs, const wh_outputs_look_t *look, bool moved, int64_t now_us) {
     const bool same = look->finding == outputs->finding;
     const bool good = look->finding == WH_OUTPUTS_GOOD;
     if (!same && !good && !has_settled(outputs, moved, now_us)) {
@@ -288,7 +288,7 @@ unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us) {
     const bool moved = outputs->moved || memcmp(&status, &outputs->last, sizeof status) != 0;
     outputs->moved = false;
     outputs->last = status;
-    const unsigned reported = judge(outputs, &look, moved, now_us);
+    const unsigned reported = judge_look(outputs, &look, moved, now_us);
     outputs->due_us = now_us + (outputs->quiet || outputs->linked ? outputs->poll_us : outputs->check_us);
     if (outputs->suspect && outputs->rest_us + outputs->settle_us < outputs->due_us) {
         outputs->due_us = outputs->rest_us + outputs->settle_us;
@@ -298,7 +298,7 @@ unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us) {
 
 int wh_outputs_write(const char *path, const int32_t *valves, size_t count) {
     char text[2 * WH_GRIPPERS];
-    const int refused = refuse(path, valves, count);
+    const int refused = refuse_file(path, valves, count);
     for (size_t i = 0; refused == 0 && i < count; ++i) {
         text[2 * i] = valves[i] == WH_VALVE_OPEN ? '0' : '1';
         text[2 * i + 1] = '\n';

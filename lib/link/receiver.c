@@ -33,7 +33,7 @@ static int64_t number(const char *text, int64_t most) {
 }
 
 /* The message repeats at most 40 bytes of the user's text. */
-static bool refuse(char *problem, const char *name, const char *value, const char *expected) {
+static bool refuse_option(char *problem, const char *name, const char *value, const char *expected) {
     snprintf(problem, WH_MULTICAST_PROBLEM_BYTES, "%.40s: %.40s (expected %s)", name,
              value[0] != '\0' ? value : "nothing", expected);
     return false;
@@ -41,25 +41,28 @@ static bool refuse(char *problem, const char *name, const char *value, const cha
 
 static bool take_place(const char *address, const char *port, wh_multicast_t *multicast, char *problem) {
     if (inet_pton(AF_INET, address, &multicast->address) != 1 || !IN_MULTICAST(ntohl(multicast->address))) {
-        return refuse(problem, "address", address,
-                      "one of multicast, 224.0.0.0 to 239.255.255.255, as in udpm://239.255.76.67:7667");
+        return refuse_option(
+            problem, "address", address,
+            "one of multicast, 224.0.0.0 to 239.255.255.255, as in udpm://239.255.76.67:7667");
     }
     multicast->port = (uint16_t)number(port, 65535);
     return number(port, 65535) >= 1 ||
-           refuse(problem, "port", port, "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
+           refuse_option(problem, "port", port,
+                         "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
 }
 
 /* Takes one of liblcm's options. */
 static bool take_option(const char *name, const char *value, wh_multicast_t *multicast, char *problem) {
     if (strcmp(name, "ttl") == 0) {
-        return number(value, 255) >= 0 || refuse(problem, name, value, "a whole number from 0 to 255");
+        return number(value, 255) >= 0 || refuse_option(problem, name, value, "a whole number from 0 to 255");
     }
     if (strcmp(name, "recv_buf_size") == 0) {
         const int64_t bytes = number(value, INT32_MAX);
         multicast->buffer_bytes = bytes > 0 ? (int)bytes : 0;
-        return bytes >= 0 || refuse(problem, name, value, "a whole number of bytes from 0 to 2147483647");
+        return bytes >= 0 ||
+               refuse_option(problem, name, value, "a whole number of bytes from 0 to 2147483647");
     }
-    return refuse(problem, name, value, "ttl=... or recv_buf_size=..., with a & between them");
+    return refuse_option(problem, name, value, "ttl=... or recv_buf_size=..., with a & between them");
 }
 
 bool wh_multicast_parse(const char *url, wh_multicast_t *multicast,

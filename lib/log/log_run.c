@@ -258,7 +258,7 @@ static void note_files(wh_log_run_t *run) {
     }
 }
 
-static void tell(wh_log_run_t *run) {
+static void tell_worth(wh_log_run_t *run) {
     note_files(run);
     note_worth(run);
     note_outcome(run);
@@ -346,7 +346,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     wh_log_files_close(&files);
     if (read && !options->only_slices) {
         finish_run(run);
-        tell(run);
+        tell_worth(run);
     }
     return read;
 }

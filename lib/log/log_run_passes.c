@@ -39,7 +39,7 @@ static void drop(wh_log_run_t *run) {
 }
 
 /* A log does not tell the gripper of a pass: it may be any gripper on a robot that has a wafer. */
-static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
+static void begin_passes(wh_log_run_t *run, const wh_latches_t *latches) {
     const wh_layout_t *layout = run->cell.layout;
     for (size_t g = 0; is_order(layout, latches) && g < run->state.gripper_count; ++g) {
         const bool is_on_robot = layout->machine.mounts[g].axis == WH_NONE;
@@ -134,7 +134,7 @@ void wh_log_run_hear_passes(wh_log_run_t *run) {
         drop(run);
     }
     if (!is_same && sound && latches->armed) {
-        begin(run, latches);
+        begin_passes(run, latches);
     }
     run->passes.number = latches->number;
     hear(run);

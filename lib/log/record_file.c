@@ -51,7 +51,7 @@ bool wh_record_file_name(const char *path, const char *tag, char name[PATH_MAX])
 /* ------------------------------------------------------------------------------------------------ opening */
 
 /* Begins with an open file. */
-static bool begin(wh_record_file_t *file, const char *path, int fd) {
+static bool begin_file(wh_record_file_t *file, const char *path, int fd) {
     struct stat status;
     const size_t length = strlen(path);
     file->fd = fd;
@@ -74,7 +74,7 @@ static bool begin(wh_record_file_t *file, const char *path, int fd) {
     return true;
 }
 
-static bool refuse(wh_record_file_t *file, const char *path, int error) {
+static bool refuse_file(wh_record_file_t *file, const char *path, int error) {
     char text[200];
     snprintf(text, sizeof text, "%s (expected a file that can be written)", strerror(error));
     wh_record_file_fail(file, path, text);
@@ -111,13 +111,13 @@ bool wh_record_file_create(wh_record_file_t *file, const char *path) {
         fd = open_new(name);
     }
     if (!named || fd < 0) {
-        return refuse(file, path, named ? errno : ENAMETOOLONG);
+        return refuse_file(file, path, named ? errno : ENAMETOOLONG);
     }
     if (strcmp(name, path) != 0) {
         fprintf(stderr, "%s: %s%s is there already: recording into %s\n", file->speaker,
                 wh_record_file_has_parts(path) ? "a part of " : "", path, name);
     }
-    return begin(file, name, fd);
+    return begin_file(file, name, fd);
 }
 
 /* True if another recording writes this file. */
@@ -154,7 +154,7 @@ bool wh_record_file_can_replace(wh_record_file_t *file, const char *path) {
         return true;
     }
     if (!wh_output_open(&output, path)) {
-        return refuse(file, path, errno);
+        return refuse_file(file, path, errno);
     }
     wh_output_drop(&output);
     return true;
@@ -168,7 +168,7 @@ bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
         return false;
     }
     if (!wh_output_open(&output, path)) {
-        return refuse(file, path, errno);
+        return refuse_file(file, path, errno);
     }
     /* The new file takes the place at once, so that the record is there also if this process is killed. */
     const int fd = fcntl(fileno(output.file), F_DUPFD_CLOEXEC, 0);
@@ -179,9 +179,9 @@ bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
         if (fd >= 0) {
             (void)close(fd);
         }
-        return refuse(file, path, error);
+        return refuse_file(file, path, error);
     }
-    return begin(file, path, fd);
+    return begin_file(file, path, fd);
 }
 
 /* ------------------------------------------------------------------------------------------------ writing */

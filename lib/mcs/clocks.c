@@ -108,7 +108,7 @@ static void look(struct wh_clocks *clocks, size_t number, const wh_state_t *stat
 
 /* native.begin_clocks(): at time 0 wafers lie where the layout has them, and doors are at home. It is told
  * once the run has its link. */
-static int begin(lua_State *L) {
+static int begin_all_clocks(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     struct wh_clocks *clocks = mcs->clocks;
     for (size_t i = 0; clocks && i < clocks->count; ++i) {
@@ -267,7 +267,7 @@ const char *wh_mcs_station_word(const wh_mcs_t *mcs, int32_t station, double *le
 const char *wh_mcs_pressure_word(const wh_mcs_t *mcs, int32_t station) {
     const int32_t number = number_of(mcs, station);
     return number != WH_NONE && mcs->clocks->of[number].of.is_lock
-               ? wh_clock_side_name(mcs->clocks->clocks[number].side)
+               ? wh_flow_side_words[mcs->clocks->clocks[number].side]
                : NULL;
 }
 
@@ -309,11 +309,11 @@ static int read_pressure(lua_State *L) {
         return 0;
     }
     const wh_clock_t *clock = &mcs->clocks->clocks[number];
-    lua_pushstring(L, wh_clock_side_name(clock->side));
+    lua_pushstring(L, wh_flow_side_words[clock->side]);
     if (!clock->is_pumping) {
         return 1;
     }
-    lua_pushstring(L, wh_clock_side_name(clock->pump_to));
+    lua_pushstring(L, wh_flow_side_words[clock->pump_to]);
     lua_pushnumber(L, clock->left_us / 1e6);
     return 3;
 }
@@ -511,7 +511,7 @@ static int set_late(lua_State *L) {
     return 0;
 }
 
-const luaL_Reg wh_mcs_clock_functions[] = {{"begin_clocks", begin},
+const luaL_Reg wh_mcs_clock_functions[] = {{"begin_clocks", begin_all_clocks},
                                            {"place", read_place},
                                            {"pressure", read_pressure},
                                            {"open_door", find_station_door},

@@ -1,6 +1,9 @@
 #include "definitions.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../layout/layout_fields.h"
 #include "../reading/layout_tool.h"
@@ -10,16 +13,43 @@
 #include "flow_plan.h"
 #include "native.h"
 
+bool wh_definitions_has_range(const wh_reader_field_t *row) {
+    return row->least < row->most && !row->words && strcmp(row->type, "boolean") != 0;
+}
+
+bool wh_definitions_usual(const wh_reader_field_t *row, double value, char *text, size_t size) {
+    if (row->otherwise || row->required || !isfinite(value)) {
+        (void)snprintf(text, size, "%s", row->otherwise ? row->otherwise : "");
+        return row->otherwise != NULL;
+    }
+    if (row->words) {
+        (void)snprintf(text, size, "\"%s\"", row->words[(size_t)value]);
+    } else if (strcmp(row->type, "boolean") == 0) {
+        (void)snprintf(text, size, "%s", value > 0 ? "true" : "false");
+    } else {
+        (void)snprintf(text, size, "%.12g", value);
+    }
+    return true;
+}
+
 static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
     lua_newtable(L);
     for (lua_Integer i = 0; fields[i].name; ++i) {
-        char type[200];
-        lua_createtable(L, 0, 4);
+        char type[200], usual[200];
+        const double value = fields[i].kind == WH_SCALAR_BY_HAND ? WH_FIELD_FOLLOWS : fields[i].usual;
+        lua_createtable(L, 0, 7);
         wh_lua_set_text(L, "name", fields[i].name);
         wh_field_type(&fields[i], type, sizeof type);
         wh_lua_set_text(L, "type", type);
         wh_lua_set_text(L, "text", fields[i].text);
         wh_lua_set_boolean(L, "required", fields[i].required);
+        if (wh_definitions_has_range(&fields[i])) {
+            wh_lua_set_number(L, "least", fields[i].least);
+            wh_lua_set_number(L, "most", fields[i].most);
+        }
+        if (wh_definitions_usual(&fields[i], value, usual, sizeof usual)) {
+            wh_lua_set_text(L, "usual", usual);
+        }
         lua_rawseti(L, -2, i + 1);
     }
 }
@@ -51,7 +81,7 @@ static void push_classes(lua_State *L, const wh_layout_class_t *classes, lua_Int
 }
 
 /* native.classes(): the tables of layouts and flows, a list of { name, text, fields }; fields is a list of
- * { name, type, text, required }. */
+ * { name, type, text, required, least and most of a number, usual = the default in words }. */
 static int list_classes(lua_State *L) {
     lua_Integer count = 0;
     while (wh_layout_classes[count].name) {

@@ -168,7 +168,7 @@ void wh_flow_fail_word(const wh_mcs_t *mcs, const char *why) {
 /* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was
  * asked for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or
  * null. */
-static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
+static void judge_flow(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;
     char text[600];
@@ -206,7 +206,7 @@ wh_flow_t *wh_flow_read_word(lua_State *L, wh_mcs_t *mcs, const wh_flow_tool_t *
 
 int wh_flow_return_word(lua_State *L, wh_mcs_t *mcs, bool has_failed) {
     wh_flow_t *flow = mcs->recorder.record->flow;
-    judge(mcs, flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
+    judge_flow(mcs, flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
     if (has_failed) {
         return lua_error(L);
     }

@@ -67,7 +67,7 @@ static void push_times(lua_State *L, const wh_layout_t *layout, size_t station) 
         if (side == WH_FLOW_BOTH) {
             lua_pushboolean(L, false);
         } else {
-            lua_pushstring(L, wh_clock_side_name(side));
+            lua_pushstring(L, wh_flow_side_words[side]);
         }
         lua_rawseti(L, -2, (lua_Integer)r + 1);
     }
@@ -76,7 +76,7 @@ static void push_times(lua_State *L, const wh_layout_t *layout, size_t station) 
     for (size_t d = 0; d < layout->machine.door_count; ++d) {
         if ((times->doors >> d & 1U) != 0) {
             const bool is_vacuum = (times->side_doors[WH_FLOW_VACUUM] >> d & 1U) != 0;
-            lua_pushstring(L, wh_clock_side_name(is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE));
+            lua_pushstring(L, wh_flow_side_words[is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE]);
             lua_rawseti(L, -2, (lua_Integer)d + 1);
         }
     }

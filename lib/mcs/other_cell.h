@@ -1,5 +1,5 @@
-/* Motion control in another cell than that of its run: the room survey tries commands there, each in a cell of
- * its own, before any run. */
+/* Motion control in another cell than that of its run: the room survey tries commands there before any run,
+ * each in a cell of its own. */
 #ifndef WH_MCS_OTHER_CELL_H
 #define WH_MCS_OTHER_CELL_H
 

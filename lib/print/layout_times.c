@@ -37,7 +37,7 @@ static void put_pump(wh_grid_t *grid, size_t column, const wh_flow_station_t *of
                      seconds(of->pump_us[WH_FLOW_VACUUM]), seconds(of->pump_us[WH_FLOW_ATMOSPHERE]),
                      seconds(of->empty_pump_us[WH_FLOW_VACUUM]),
                      seconds(of->empty_pump_us[WH_FLOW_ATMOSPHERE]));
-        wh_grid_text(grid, column + 1, WH_INK_PLAIN, "%s", wh_clock_side_name(of->side));
+        wh_grid_text(grid, column + 1, WH_INK_PLAIN, "%s", wh_flow_side_words[of->side]);
     }
 }
 
@@ -73,7 +73,7 @@ static json_t *pump(const wh_flow_station_t *of) {
                ? wh_json_set(json_object(), "down %g up %g empty_down %g empty_up %g state %s",
                              seconds(of->pump_us[WH_FLOW_VACUUM]), seconds(of->pump_us[WH_FLOW_ATMOSPHERE]),
                              seconds(of->empty_pump_us[WH_FLOW_VACUUM]),
-                             seconds(of->empty_pump_us[WH_FLOW_ATMOSPHERE]), wh_clock_side_name(of->side))
+                             seconds(of->empty_pump_us[WH_FLOW_ATMOSPHERE]), wh_flow_side_words[of->side])
                : json_null();
 }
 

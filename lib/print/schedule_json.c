@@ -13,14 +13,13 @@ static const char *name_or_null(const wh_schedule_names_t *names, int32_t number
 
 static json_t *row_of(const wh_schedule_t *schedule, size_t number) {
     const wh_schedule_row_t *row = &schedule->rows[number];
-    static const char *const sides[] = {"atmosphere", "vacuum", NULL};
     json_t *object = wh_json_set(json_object(), "line %lld robot %s action %s wafer %s wafer2 %s station %s",
                                  (long long)row->line, name_or_null(&schedule->robots, row->robot),
                                  wh_schedule_words[row->action], name_or_null(&schedule->wafers, row->wafer),
                                  name_or_null(&schedule->wafers, row->wafer2),
                                  name_or_null(&schedule->stations, row->station));
     return wh_json_set(object, "slot %d to %s value %s arm %lld begin_s %g end_s %g", (int)row->slot,
-                       name_or_null(&schedule->stations, row->to), sides[row->side],
+                       name_or_null(&schedule->stations, row->to), wh_flow_side_words[row->side],
                        row->arm > 0 ? (long long)row->arm : WH_JSON_NONE, seconds(row->begin_us),
                        seconds(row->end_us));
 }

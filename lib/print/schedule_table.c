@@ -22,7 +22,6 @@ static void put_cell(FILE *out, const char *column, const char *text) {
 /* All columns that a row has. */
 static void put_row(FILE *out, const wh_schedule_t *schedule, size_t number) {
     const wh_schedule_row_t *row = &schedule->rows[number];
-    static const char *const sides[] = {"atmosphere", "vacuum", ""};
     fprintf(out, "  line %zu: action %s", row->line, wh_schedule_words[row->action]);
     put_cell(out, "robot", wh_schedule_text(&schedule->robots, row->robot));
     put_cell(out, "wafer", wh_schedule_text(&schedule->wafers, row->wafer));
@@ -30,7 +29,7 @@ static void put_row(FILE *out, const wh_schedule_t *schedule, size_t number) {
     put_cell(out, "station", wh_schedule_text(&schedule->stations, row->station));
     fprintf(out, ", slot %d", (int)row->slot);
     put_cell(out, "to", wh_schedule_text(&schedule->stations, row->to));
-    put_cell(out, "value", sides[row->side]);
+    put_cell(out, "value", row->side == WH_FLOW_BOTH ? "" : wh_flow_side_words[row->side]);
     if (row->arm > 0) {
         fprintf(out, ", arm %d", (int)row->arm);
     }

@@ -17,8 +17,7 @@ json_t *wh_station_event_to_json(const void *subject, size_t i) {
         json_object(), "utime %lld kind %s station %s slot %lld wafer %s side %s seconds %g",
         (json_int_t)event->at_us, wh_clock_kind_name(event->kind),
         wh_record_station_name(record, from->station), of_place ? (json_int_t)event->slot + 1 : WH_JSON_NONE,
-        wh_record_wafer_name(record, event->wafer),
-        event->side == WH_FLOW_BOTH ? NULL : wh_clock_side_name(event->side), (double)event->us / 1e6);
+        wh_record_wafer_name(record, event->wafer), wh_flow_side_words[event->side], (double)event->us / 1e6);
     return of_port ? wh_json_set(object, "step %s carrier %s", wh_load_port_step_name(from->step),
                                  from->carrier[0] ? from->carrier : NULL)
                    : object;

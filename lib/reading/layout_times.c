@@ -14,15 +14,8 @@ int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback
     return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
 }
 
-/* A lock that turns in no time would turn again and again at one instant.
- * A clean of no time would be none. */
-static int64_t read_above_zero(wh_reader_t *reader, const char *field, double fallback) {
-    const int64_t us = wh_timed_read_us(reader, field, fallback);
-    if (us == 0) {
-        (void)wh_reader_push(reader, field);
-        wh_reader_fail(reader, field, "at least 0.000001 s");
-    }
-    return us;
+int64_t wh_layout_read_us(wh_reader_t *reader, const char *field) {
+    return wh_layout_us(wh_reader_apart(reader, field));
 }
 
 static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
@@ -33,46 +26,44 @@ static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
         wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
     }
     if (wh_reader_has(reader, "after")) {
-        station->clean_after = wh_reader_whole(reader, "after", 1, 1, 1000000);
+        station->clean_after = (int32_t)wh_reader_apart(reader, "after");
     }
-    station->clean_us = read_above_zero(reader, "seconds", NAN);
-    station->cleans_full = !wh_reader_boolean(reader, "empty", true);
+    station->clean_us = wh_layout_read_us(reader, "seconds");
+    station->cleans_full = !(wh_reader_apart(reader, "empty") > 0);
     if (wh_reader_has(reader, "idle")) {
-        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
+        station->idle_us = wh_layout_read_us(reader, "idle");
     }
     wh_reader_leave(reader);
 }
 
 static void read_pump(wh_reader_t *reader, wh_flow_station_t *station, const wh_reader_field_t *pump_fields) {
-    static const char *const states[] = {"atmosphere", "vacuum", NULL};
     station->is_lock = wh_reader_open(reader, "pump", pump_fields);
     if (station->is_lock) {
-        station->pump_us[WH_FLOW_VACUUM] = read_above_zero(reader, "down", NAN);
-        station->pump_us[WH_FLOW_ATMOSPHERE] = read_above_zero(reader, "up", NAN);
+        const double down = wh_reader_apart(reader, "down"), up = wh_reader_apart(reader, "up");
+        station->pump_us[WH_FLOW_VACUUM] = wh_layout_us(down);
+        station->pump_us[WH_FLOW_ATMOSPHERE] = wh_layout_us(up);
         station->empty_pump_us[WH_FLOW_VACUUM] =
-            read_above_zero(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
+            wh_layout_us(wh_reader_apart_from(reader, "empty_down", down));
         station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
-            read_above_zero(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
+            wh_layout_us(wh_reader_apart_from(reader, "empty_up", up));
         wh_reader_leave(reader);
     } else if (wh_reader_has(reader, "state")) {
         wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");
     }
-    station->side = wh_reader_choice(reader, "state", 0, states) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+    station->side = (wh_flow_side_t)wh_reader_apart(reader, "state");
 }
 
 void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
                               const wh_reader_field_t *pump_fields) {
-    station->process_us = wh_timed_read_us(reader, "process", 0);
+    station->process_us = wh_layout_read_us(reader, "process");
     if (wh_reader_has(reader, "window")) {
-        station->window_us = wh_timed_read_us(reader, "window", 0);
+        station->window_us = wh_layout_read_us(reader, "window");
     }
     read_clean(reader, station);
     read_pump(reader, station, pump_fields);
 }
 
 /* ------------------------------------------------------------------------------------ in a cell with axes */
-
-static const char *const sides[] = {"atmosphere", "vacuum", NULL};
 
 static bool says_any(const wh_reader_t *reader) {
     static const char *const fields[] = {"process", "window", "clean", "pump", "state", "side"};
@@ -101,7 +92,7 @@ static wh_flow_side_t read_side(wh_reader_t *reader, const wh_layout_times_t *ti
         wh_reader_refuse(reader, "side", NULL,
                          "\"vacuum\" or \"atmosphere\": where %s comes into the load lock", who);
     }
-    return wh_reader_choice(reader, "side", 0, sides) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+    return (wh_flow_side_t)wh_reader_apart(reader, "side");
 }
 
 /* A door stands between the lock and one side. */
@@ -130,7 +121,7 @@ static void read_servers(wh_reader_t *reader, const wh_layout_t *layout, const w
         wh_reader_refuse(reader, "by", NULL, "the load lock's robots by name, each with its `side`");
     }
     for (size_t r = 0; r < layout->robot_count; ++r) {
-        if (is_said && wh_reader_enter(reader, layout->robots[r].name)) {
+        if (is_said && wh_reader_open(reader, layout->robots[r].name, wh_layout_approach_fields)) {
             station->by[r].side = read_side(reader, times, layout->robots[r].name);
             add_door(reader, layout, times, station->by[r].door, station->by[r].side);
             wh_reader_leave(reader);
@@ -150,9 +141,9 @@ static void read_pump_doors(wh_reader_t *reader, const wh_layout_t *layout, wh_l
     }
     if (wh_reader_open(reader, "doors", wh_layout_lock_doors_fields)) {
         for (int side = 0; side < 2; ++side) {
-            if (wh_reader_has(reader, sides[side])) {
+            if (wh_reader_has(reader, wh_flow_side_words[side])) {
                 const int32_t door =
-                    wh_layout_read_name(reader, layout, sides[side], NULL, wh_layout_find_door,
+                    wh_layout_read_name(reader, layout, wh_flow_side_words[side], NULL, wh_layout_find_door,
                                         "the name of one of this layout's doors");
                 add_door(reader, layout, times, door, (wh_flow_side_t)side);
             }
@@ -167,7 +158,7 @@ static void check_homes(wh_reader_t *reader, const wh_layout_t *layout, const wh
     for (size_t d = 0; times->of.is_lock && d < layout->machine.door_count; ++d) {
         const bool is_wrong = (times->side_doors[1 - (int)times->of.side] >> d & 1U) != 0;
         if (is_wrong && layout->machine.doors[d].is_open) {
-            wh_reader_refuse(reader, "state", sides[times->of.side],
+            wh_reader_refuse(reader, "state", wh_flow_side_words[times->of.side],
                              "the pressure behind %s, whose home is open", layout->door_list[d].name);
         }
     }

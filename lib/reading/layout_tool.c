@@ -75,8 +75,8 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
     lua_pop(reader->L, 1);
     if (type == LUA_TTABLE) {
         (void)wh_reader_open(reader, "door", wh_layout_timed_door_fields);
-        door->open_us = wh_timed_read_us(reader, "open", NAN);
-        door->close_us = wh_timed_read_us(reader, "close", NAN);
+        door->open_us = wh_layout_read_us(reader, "open");
+        door->close_us = wh_layout_read_us(reader, "close");
         wh_reader_leave(reader);
     } else if (type != LUA_TNIL) {
         door->open_us = door->close_us = wh_timed_read_us(reader, "door", NAN);
@@ -84,10 +84,9 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
 }
 
 static void read_station(wh_reader_t *reader, wh_flow_station_t *station) {
-    static const char *const kinds[] = {"slots", "load_port", NULL};
     wh_reader_refuse_unknown(reader, wh_layout_timed_station_fields);
-    station->is_load_port = wh_reader_choice(reader, "kind", 0, kinds) == 1;
-    station->slots = wh_reader_whole(reader, "slots", station->is_load_port ? 25 : 1, 1, 100000);
+    station->is_load_port = wh_reader_apart(reader, "kind") > 0;
+    station->slots = (int32_t)wh_reader_apart_from(reader, "slots", station->is_load_port ? 25 : 1);
     wh_layout_read_clockwork(reader, station, wh_layout_pump_fields);
 }
 
@@ -128,7 +127,6 @@ static int32_t find_robot(wh_reader_t *reader, const wh_flow_tool_t *tool, const
 /* The robot serves the station. Its own fields are in the table at which the reader is, if `is_table`. */
 static void read_server(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, int32_t station,
                         const wh_flow_door_t *door, bool is_table) {
-    static const char *const sides[] = {"atmosphere", "vacuum", NULL};
     const size_t of = wh_flow_of(tool, robot, station);
     tool->serves[of] = true;
     tool->doors[of] = *door;
@@ -136,8 +134,7 @@ static void read_server(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot
         wh_reader_refuse_unknown(reader, wh_layout_timed_by_fields);
         read_door(reader, &tool->doors[of]);
         if (wh_reader_has(reader, "side")) {
-            tool->sides[of] =
-                wh_reader_choice(reader, "side", 0, sides) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+            tool->sides[of] = (wh_flow_side_t)wh_reader_apart(reader, "side");
         }
     }
     if (tool->stations[station].is_lock && tool->sides[of] == WH_FLOW_BOTH) {

@@ -36,6 +36,9 @@ int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback
 int32_t wh_timed_find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
                               const char *name);
 
+/* A time by its row. */
+int64_t wh_layout_read_us(wh_reader_t *reader, const char *field);
+
 /* `at`: the stations' places, for robots with a speed. */
 void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]);
 
@@ -43,11 +46,5 @@ void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robo
  * those that a pump may have there. */
 void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
                               const wh_reader_field_t *pump_fields);
-
-extern const wh_reader_field_t wh_layout_timed_fields[];
-extern const wh_reader_field_t wh_layout_timed_robot_fields[];
-extern const wh_reader_field_t wh_layout_timed_station_fields[];
-extern const wh_reader_field_t wh_layout_timed_by_fields[];
-extern const wh_reader_field_t wh_layout_timed_door_fields[];
 
 #endif

@@ -88,7 +88,7 @@ static void read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot)
 
 /* The straight way between the stations' places at the robot's speed. */
 static void fly(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
-    const double speed = wh_reader_number(reader, "speed", NAN, 1e-3, 1e6);
+    const double speed = wh_reader_apart(reader, "speed");
     for (size_t a = 0; a < tool->station_count; ++a) {
         for (size_t b = 0; b < tool->station_count; ++b) {
             const wh_vec3_t way = {at[a].x - at[b].x, at[a].y - at[b].y, at[a].z - at[b].z};
@@ -115,7 +115,7 @@ static void read_stand(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot)
 
 void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
     wh_reader_refuse_unknown(reader, wh_layout_timed_robot_fields);
-    tool->robots[robot].arms = wh_reader_whole(reader, "arms", 1, 1, 2);
+    tool->robots[robot].arms = (int32_t)wh_reader_apart(reader, "arms");
     read_stand(reader, tool, robot);
     read_times(reader, tool, robot, "pick", NAN, tool->pick_us);
     read_times(reader, tool, robot, "place", NAN, tool->place_us);

@@ -249,7 +249,7 @@ static void push(wh_path_t *curve, int64_t slice, double value) {
     curve->samples[curve->sample_count++] = (wh_sample_t){slice, value};
 }
 
-static void begin(wh_path_t *curve, int64_t slice, double value) {
+static void begin_curve(wh_path_t *curve, int64_t slice, double value) {
     push(curve, slice, value);
     add_point(curve, &curve->samples[0], 0, true);
     curve->is_fresh = true;
@@ -258,7 +258,7 @@ static void begin(wh_path_t *curve, int64_t slice, double value) {
 void wh_path_add(wh_path_t *curve, int64_t slice, double value) {
     ++curve->of;
     if (curve->sample_count == 0) {
-        begin(curve, slice, value);
+        begin_curve(curve, slice, value);
         return;
     }
     if (curve->is_at_rest && is_same(curve->samples[1].value, value)) {

@@ -13,7 +13,7 @@ static size_t magnitude(int32_t count) {
     return count < 0 ? (size_t) - (int64_t)count : (size_t)count;
 }
 
-static void begin(wh_edge_scans_t *scans, int64_t slice, const wh_scan_t *scan) {
+static void begin_scan(wh_edge_scans_t *scans, int64_t slice, const wh_scan_t *scan) {
     const size_t room = magnitude(scan->count);
     scans->number = scan->number;
     if (scans->left_out > 0 || room > WH_SCANS_SAMPLES - scans->samples) {
@@ -54,7 +54,7 @@ void wh_edge_scans_hear(wh_edge_scans_t *scans, int64_t slice, const wh_scan_t *
         return;
     }
     if (scan->number != scans->number) {
-        begin(scans, slice, scan);
+        begin_scan(scans, slice, scan);
     }
     wh_edge_scan_t *last = scans->count > 0 ? &scans->list[scans->count - 1] : NULL;
     if (last && last->number == scan->number && last->count == scan->count) {

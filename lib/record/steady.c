@@ -161,7 +161,7 @@ static void count_wafers(search_t *search) {
     free(counted);
 }
 
-static wh_figure_t judge(const wh_record_t *record, const stretch_t *cycle) {
+static wh_figure_t judge_cycle(const wh_record_t *record, const stretch_t *cycle) {
     const wh_figure_t whole = wh_throughput(record).figure;
     const bool is_bad = whole != WH_FIGURE_GIVEN && whole != WH_FIGURE_NO_WAFER && whole != WH_FIGURE_TWICE;
     if (is_bad || cycle->wafers == 0) {
@@ -198,7 +198,7 @@ static void describe(const search_t *search, size_t i, wh_steady_cycle_t *steady
                                   .seconds = wh_throughput_seconds(search->record, cycle->end - cycle->begin),
                                   .mark = cycle->mark,
                                   .times = times,
-                                  .figure = judge(search->record, cycle),
+                                  .figure = judge_cycle(search->record, cycle),
                                   .wafers = cycle->wafers};
     if (steady->figure == WH_FIGURE_GIVEN) {
         steady->wafers_per_hour = 3600 * (double)steady->wafers / steady->seconds;

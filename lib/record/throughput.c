@@ -85,7 +85,7 @@ static bool is_put_twice(const wh_record_t *record) {
     return twice;
 }
 
-static wh_figure_t judge(const wh_record_t *record, const wh_throughput_t *throughput) {
+static wh_figure_t judge_rate(const wh_record_t *record, const wh_throughput_t *throughput) {
     const bool stands[] = {[WH_FIGURE_PARTIAL] = record->is_partial,
                            [WH_FIGURE_UNTOLD] = record->is_untold,
                            [WH_FIGURE_FAILED] = !record->ok,
@@ -114,7 +114,7 @@ wh_throughput_t wh_throughput(const wh_record_t *record) {
         }
     }
     throughput.seconds = wh_throughput_seconds(record, throughput.slices);
-    throughput.figure = judge(record, &throughput);
+    throughput.figure = judge_rate(record, &throughput);
     if (throughput.figure == WH_FIGURE_GIVEN) {
         throughput.wafers_per_hour = 3600 * (double)throughput.wafers / throughput.seconds;
     }

@@ -189,7 +189,8 @@ static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOT
 
 /* ------------------------------------------------------------------------------------------------ placing */
 
-static bool refuse(const wh_plots_t *plots, size_t i, const char *why, char message[WH_PLOTS_MESSAGE_BYTES]) {
+static bool refuse_plot(const wh_plots_t *plots, size_t i, const char *why,
+                        char message[WH_PLOTS_MESSAGE_BYTES]) {
     (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s.%s: %s", plots->names[i / ENDINGS],
                    endings[i % ENDINGS], why);
     return false;
@@ -200,7 +201,7 @@ static bool is_free(const wh_plots_t *plots, const char *folder, char message[WH
     char to[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
         if (path_of(plots, i, folder, to) && wh_output_is_kept(to)) {
-            return refuse(plots, i, WH_OUTPUT_KEPT, message);
+            return refuse_plot(plots, i, WH_OUTPUT_KEPT, message);
         }
     }
     return true;
@@ -212,7 +213,7 @@ static bool place(const wh_plots_t *plots, const char *folder, char message[WH_P
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
         if (!path_of(plots, i, plots->folder, from) || !path_of(plots, i, folder, to) ||
             rename(from, to) != 0) {
-            return refuse(plots, i, strerror(errno), message);
+            return refuse_plot(plots, i, strerror(errno), message);
         }
     }
     return true;

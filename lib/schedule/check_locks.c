@@ -4,8 +4,6 @@
 #include "../text/array.h"
 #include "check_internal.h"
 
-static const char *const sides[] = {"atmosphere", "vacuum"};
-
 /* The side of a robot's row at a lock of the layout; WH_FLOW_BOTH: none. */
 static wh_flow_side_t side_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
     return check->tool && row->robot != WH_FLOW_NONE ? check->tool->sides[wh_check_pair(check, row)]
@@ -132,7 +130,8 @@ static void check_door_side(wh_schedule_state_t *check, int32_t row, const wh_ch
     if (is_lock && door->key < 2 && station->has_pumps && (int32_t)station->side != door->key) {
         wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
                        "begin_s: %.10g (expected a time when %s is at %s)", wh_check_seconds(of->begin_us),
-                       wh_schedule_text(&check->schedule->stations, of->station), sides[door->key]);
+                       wh_schedule_text(&check->schedule->stations, of->station),
+                       wh_flow_side_words[door->key]);
     }
 }
 
@@ -263,7 +262,7 @@ static void check_pressure(wh_schedule_state_t *check, int32_t row) {
         wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
                        "begin_s: %.10g (expected a time when %s is at %s, the side of %s)",
                        wh_check_seconds(of->begin_us),
-                       wh_schedule_text(&check->schedule->stations, of->station), sides[side],
+                       wh_schedule_text(&check->schedule->stations, of->station), wh_flow_side_words[side],
                        wh_schedule_text(&check->schedule->robots, of->robot));
     }
     station->side = side;

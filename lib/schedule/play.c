@@ -56,7 +56,7 @@ static int32_t place_of(const maker_t *maker, const wh_schedule_row_t *row) {
     return maker->tool->stations[station_of(maker, row->station)].first_place + row->slot - 1;
 }
 
-static bool refuse(maker_t *maker, size_t row, const char *what) {
+static bool refuse_row(maker_t *maker, size_t row, const char *what) {
     (void)snprintf(maker->play->message, sizeof maker->play->message, "%.200s:%zu: %s", maker->schedule->path,
                    maker->schedule->rows[row].line, what);
     return false;
@@ -230,7 +230,8 @@ static bool add_wafers(maker_t *maker) {
         const leg_t *last = last_leg(maker, w);
         maker->play->resting += last == NULL;
         if (last && last->put_row == NO_ROW) {
-            good = refuse(maker, last->take_row, "the wafer is left aboard (expected a place for each one)");
+            good =
+                refuse_row(maker, last->take_row, "the wafer is left aboard (expected a place for each one)");
         } else if (last) {
             find_processes(maker, w);
             wafers[maker->play->wafers++] = (timed_t){maker->comes_us[w], 0, (size_t)w};

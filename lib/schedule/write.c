@@ -221,7 +221,6 @@ static void write_number(int32_t number, FILE *out) {
 static void write_line(const lines_t *lines, const line_t *line, FILE *out) {
     const wh_flow_tool_t *tool = lines->figures->tool;
     const wh_flow_wafer_t *wafers = lines->figures->plan->wafers;
-    static const char *const sides[] = {"atmosphere", "vacuum", ""};
     write_name(line->robot == WH_FLOW_NONE ? "" : tool->robots[line->robot].name, out);
     fprintf(out, ",%s,", wh_schedule_words[line->action]);
     write_name(line->wafer == WH_FLOW_NONE ? "" : wafers[line->wafer].name, out);
@@ -235,7 +234,7 @@ static void write_line(const lines_t *lines, const line_t *line, FILE *out) {
     write_name(line->wafer2 == WH_FLOW_NONE ? "" : wafers[line->wafer2].name, out);
     fputc(',', out);
     write_name(line->to == WH_FLOW_NONE ? "" : tool->stations[line->to].name, out);
-    fprintf(out, ",%s\n", sides[line->side]);
+    fprintf(out, ",%s\n", line->side == WH_FLOW_BOTH ? "" : wh_flow_side_words[line->side]);
 }
 
 bool wh_schedule_write(const wh_flow_figures_t *figures, FILE *out) {

@@ -352,8 +352,8 @@ static bool run_job(lua_State *L, wh_sandbox_job_t *job, int arguments, wh_sandb
     return conclude(L, job, base, status, result != NULL ? result : &unused);
 }
 
-static bool refuse(wh_sandbox_result_t *result, wh_sandbox_reason_t reason, const char *path,
-                   const char *why) {
+static bool refuse_run(wh_sandbox_result_t *result, wh_sandbox_reason_t reason, const char *path,
+                       const char *why) {
     if (result != NULL) {
         char text[WH_SANDBOX_MESSAGE_BYTES];
         result->status = reason;
@@ -366,7 +366,7 @@ static bool refuse(wh_sandbox_result_t *result, wh_sandbox_reason_t reason, cons
 static bool load_job(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
     abbreviate(job);
     if (!lua_checkstack(L, 4)) {
-        return refuse(result, WH_SANDBOX_ERROR, job->path, "stack overflow");
+        return refuse_run(result, WH_SANDBOX_ERROR, job->path, "stack overflow");
     }
     lua_pushcfunction(L, load_and_run);
     lua_pushlightuserdata(L, job);
@@ -394,7 +394,7 @@ bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *re
     if (why != NULL) {
         char text[100];
         snprintf(text, sizeof text, "cannot be read: %.80s", why);
-        return refuse(result, WH_SANDBOX_UNREADABLE, path, text);
+        return refuse_run(result, WH_SANDBOX_UNREADABLE, path, text);
     }
     return load_job(L, &job, result);
 }

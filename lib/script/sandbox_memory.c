@@ -20,7 +20,7 @@ static void charge_block(wh_sandbox_t *sandbox, bool is_string, size_t size) {
 
 /* After a refusal Lua collects all garbage and tries again. Near the cap each small table could cost such a
  * collection, so its work is charged as well. */
-static void *refuse(wh_sandbox_t *sandbox) {
+static void *refuse_block(wh_sandbox_t *sandbox) {
     sandbox->refused = true;
     wh_sandbox_spend(sandbox, sandbox->memory >> STEP_SHIFT);
     if (sandbox->running != NULL && sandbox->job != NULL) {
@@ -42,7 +42,7 @@ static void *shrink(wh_sandbox_t *sandbox, void *block, size_t held, size_t size
 static void *grow(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
     void *const moved = size - held <= sandbox->memory_cap - sandbox->memory ? realloc(block, size) : NULL;
     if (moved == NULL) {
-        return refuse(sandbox);
+        return refuse_block(sandbox);
     }
     sandbox->memory += size - held;
     if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {

@@ -6,7 +6,7 @@
 #include "../text/array.h"
 #include "crew.h"
 
-static bool refuse(const wh_paces_t *paces, const char *why) {
+static bool refuse_paces(const wh_paces_t *paces, const char *why) {
     fprintf(stderr, "%s: %s\n", paces->run.script, why);
     return false;
 }
@@ -28,7 +28,7 @@ static bool play_base(wh_paces_t *paces) {
         fprintf(stderr, "%s\n", paces->base.reason);
         return false;
     }
-    return paces->count > 0 || refuse(paces, "nothing of its cell could be faster");
+    return paces->count > 0 || refuse_paces(paces, "nothing of its cell could be faster");
 }
 
 static void play(void *user, size_t i, wh_script_run_t *run) {

@@ -146,7 +146,7 @@ bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool) {
 
 /* ------------------------------------------------------------------------------------------------- others */
 
-static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
+static bool tell_rank(const wh_ranks_t *ranks, char kind, const char *text) {
     const size_t size = strlen(text) + 1;
     char *message = wh_array_new(size + 1, 1);
     message[0] = kind;
@@ -163,7 +163,7 @@ static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     wh_progress_free(&pool->progress);
     wh_progress_init(&pool->progress, pool->study);
     pthread_mutex_unlock(&pool->lock);
-    const bool told = text && tell(ranks, kind, text);
+    const bool told = text && tell_rank(ranks, kind, text);
     free(text);
     return told;
 }
@@ -216,7 +216,7 @@ bool wh_ranks_help(wh_ranks_t *ranks, wh_pool_t *pool, bool (*interrupted)(void)
         sound = !wh_pool_look(pool).failed && go_on(ranks, pool, &helper);
     }
     if (wh_pool_look(pool).failed) {
-        tell(ranks, HAS_FAILED, pool->message);
+        tell_rank(ranks, HAS_FAILED, pool->message);
         return false;
     }
     return sound && !interrupted() && tell_progress(ranks, pool, HAS_ENDED);

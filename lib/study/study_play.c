@@ -30,7 +30,7 @@
 
 /* ---------------------------------------------------------------------------------- what all trials share */
 
-static bool refuse(const char *path, const char *text) {
+static bool refuse_script(const char *path, const char *text) {
     fprintf(stderr, "%s: %s\n", path, text);
     return false;
 }
@@ -140,24 +140,25 @@ bool wh_study_is_of_noise(const wh_study_t *study) {
 /* Without widths all trials are alike, unless sensors with noise of their own are read. */
 static bool draws_something(const wh_study_t *study) {
     return study->draws_nothing || study->drawn_count > 0 || wh_study_is_of_noise(study) ||
-           refuse(study->layout->path,
-                  "study: nothing is drawn, so that all trials are alike (expected a width "
-                  "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
+           refuse_script(study->layout->path,
+                         "study: nothing is drawn, so that all trials are alike (expected a width "
+                         "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
 }
 
 /* True if trials make sense; else standard error says why not. */
 static bool is_fit(const wh_study_t *study) {
     if (!study->layout || !study->nominal.record.wafers) {
-        return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
+        return refuse_script(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
     if (!study->layout->errors && !study->draws_nothing) {
-        return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
-                                           "dx = 0.3 } }, here or in the script)");
+        return refuse_script(study->layout->path,
+                             "study: nil (expected what is drawn, as study = { placement = { "
+                             "dx = 0.3 } }, here or in the script)");
     }
     if (checks_nothing(study)) {
-        return refuse(study->run.script,
-                      "takes no wafer and expects nothing of any, so that no trial could fail "
-                      "(expected get, put, or expect of where a wafer is)");
+        return refuse_script(study->run.script,
+                             "takes no wafer and expects nothing of any, so that no trial could fail "
+                             "(expected get, put, or expect of where a wafer is)");
     }
     return true;
 }

@@ -13,7 +13,7 @@
 
 /* ------------------------------------------------------------------------------------------------- ranges */
 
-static bool refuse(const char *parameter, const char *why) {
+static bool refuse_parameter(const char *parameter, const char *why) {
     fprintf(stderr, "--set %s: %s\n", parameter, why);
     return false;
 }
@@ -46,15 +46,15 @@ static bool add_axis(wh_script_sweep_t *sweep, const char *parameter) {
     const size_t length = strcspn(parameter, "=");
     double numbers[3];
     if (!take_numbers(parameter + length + 1, numbers)) {
-        return refuse(parameter, "no range (expected NAME=START:STEP:END, three numbers)");
+        return refuse_parameter(parameter, "no range (expected NAME=START:STEP:END, three numbers)");
     }
     /* The end belongs to the range although a step such as 0.1 is rounded. */
     const double steps = floor((numbers[2] - numbers[0]) / numbers[1] + 1e-9);
     if (!isfinite(steps) || steps < 0) {
-        return refuse(parameter, "the step does not lead to the end (expected one that does)");
+        return refuse_parameter(parameter, "the step does not lead to the end (expected one that does)");
     }
     if (steps >= WH_SWEEP_MOST) {
-        return refuse(parameter, "too many values (expected at most 10000 runs)");
+        return refuse_parameter(parameter, "too many values (expected at most 10000 runs)");
     }
     wh_sweep_axis_t *axis = &sweep->axes[sweep->axis_count++];
     *axis = (wh_sweep_axis_t){wh_text_copy(parameter), numbers[0], numbers[1], numbers[2],
@@ -282,7 +282,8 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     }
 }
 
-static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, wh_sweep_point_t *point) {
+static void judge_point(const wh_script_run_t *run, wh_script_run_outcome_t outcome,
+                        wh_sweep_point_t *point) {
     const wh_record_t *record = &run->record;
     char reason[REASON_BYTES] = "";
     if (outcome == WH_RUN_BAD_INPUT) {
@@ -307,7 +308,7 @@ void wh_sweep_point_play(const wh_script_run_options_t *options, wh_script_run_t
     if (outcome != WH_RUN_BAD_INPUT) {
         measure(&run->record, point);
     }
-    judge(run, outcome, point);
+    judge_point(run, outcome, point);
 }
 
 void wh_sweep_point_free(wh_sweep_point_t *point) {

@@ -39,7 +39,7 @@ void wh_worker_close(wh_worker_t *worker) {
     free(worker->world.memory);
 }
 
-static void begin(wh_worker_t *worker, uint64_t trial) {
+static void begin_trial(wh_worker_t *worker, uint64_t trial) {
     wh_outcome_t *outcome = &worker->outcome;
     outcome->trial = trial;
     outcome->whole = outcome->complained = false;
@@ -152,7 +152,7 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_study_t *study = worker->study;
     const wh_record_t *record = &study->nominal.record;
     const wh_trial_t name = {study->seed, trial};
-    begin(worker, trial);
+    begin_trial(worker, trial);
     wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, &worker->room);
     if (!set_up(worker)) {
         return false;
@@ -192,7 +192,7 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
     const wh_trial_t name = {worker->study->seed, trial};
     /* Errors by name are given, not drawn: without any it is the plain run. */
     worker->options.trial = worker->options.errors ? NULL : &name;
-    begin(worker, trial);
+    begin_trial(worker, trial);
     const wh_script_run_outcome_t outcome = wh_script_run(&worker->run, &worker->options);
     const bool usable = outcome != WH_RUN_BAD_INPUT && worker->run.record.wafers;
     if (usable) {

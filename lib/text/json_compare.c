@@ -45,7 +45,7 @@ static const json_t *times_beside(const json_t *object, const json_t *list) {
 
 /* ------------------------------------------------------------------------------------------------- values */
 
-static void tell(comparison_t *all, const json_t *a, const json_t *b, double time_s) {
+static void tell_difference(comparison_t *all, const json_t *a, const json_t *b, double time_s) {
     const wh_json_difference_t difference = {all->path, a, b, time_s};
     all->listener(all->user, &difference);
 }
@@ -154,7 +154,8 @@ static void compare(comparison_t *all, const json_t *a, const json_t *b, double 
     } else if (json_is_array(a) && json_is_array(b)) {
         compare_lists(all, a, b, none, time_s);
     } else if (!is_same(a, b)) {
-        tell(all, a, b, json_is_object(there) && is_element(all) ? own_time(there, time_s) : time_s);
+        tell_difference(all, a, b,
+                        json_is_object(there) && is_element(all) ? own_time(there, time_s) : time_s);
     }
 }
 

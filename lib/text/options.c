@@ -45,8 +45,8 @@ static bool read_count(const wh_option_t *option, const char *text, uint64_t *va
     return text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0 && (double)*value >= option->least;
 }
 
-static void refuse(const wh_option_t *option, const char *text, const char *expected,
-                   const struct argp_state *state) {
+static void refuse_value(const wh_option_t *option, const char *text, const char *expected,
+                         const struct argp_state *state) {
     argp_error(state, "--%s: %s (expected %s)", option->name, text[0] != '\0' ? text : "nothing", expected);
 }
 
@@ -60,7 +60,7 @@ static void refuse_number(const wh_option_t *option, const char *text, const str
         (void)snprintf(expected, sizeof expected, "a %s from %.10g to %.10g", kind, option->least,
                        option->most);
     }
-    refuse(option, text, option->expected ? option->expected : expected, state);
+    refuse_value(option, text, option->expected ? option->expected : expected, state);
 }
 
 static void take_number(const wh_option_t *option, void *variable, const char *text,
@@ -114,7 +114,7 @@ static void take(const wh_option_t *option, void *variable, char *text, struct a
         break;
     case WH_OPTION_TEXT:
         if (text[0] == '\0') {
-            refuse(option, text, option->argument, state);
+            refuse_value(option, text, option->argument, state);
         }
         *(const char **)variable = text;
         break;
@@ -156,7 +156,7 @@ static bool has_operand(const parser_t *parser) {
     return parser->line->operands > 0 ? list->count > 0 : *(const char **)operand_of(parser) != NULL;
 }
 
-static void check(const parser_t *parser, struct argp_state *state) {
+static void check_option_tables(const parser_t *parser, struct argp_state *state) {
     if (!has_operand(parser) && !parser->line->operand_may_lack) {
         argp_error(state, "which %s?", parser->line->operand);
     }
@@ -270,7 +270,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         take_operand(parser, text, state);
         return 0;
     case ARGP_KEY_END:
-        check(parser, state);
+        check_option_tables(parser, state);
         return 0;
     default:
         break;

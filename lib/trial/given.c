@@ -16,7 +16,7 @@ typedef struct {
     double value;
 } given_t;
 
-static void refuse(lua_State *L, const given_t *given, const char *why) {
+static void refuse_error(lua_State *L, const given_t *given, const char *why) {
     lua_pushfstring(L, "--error %s: %s", given->text, why);
     (void)lua_error(L);
 }
@@ -47,12 +47,12 @@ static bool take_names(given_t *given, const char *equals) {
 static void take_apart(lua_State *L, given_t *given) {
     const char *equals = strrchr(given->text, '=');
     if (!equals || !take_names(given, equals)) {
-        refuse(L, given, "no error (expected NAME.FIELD=VALUE, such as A.x=0.12)");
+        refuse_error(L, given, "no error (expected NAME.FIELD=VALUE, such as A.x=0.12)");
     } else {
         char *end = NULL;
         given->value = strtod(equals + 1, &end);
         if (end == equals + 1 || *end != '\0' || !isfinite(given->value)) {
-            refuse(L, given, "no number (expected NAME.FIELD=VALUE, such as A.x=0.12)");
+            refuse_error(L, given, "no number (expected NAME.FIELD=VALUE, such as A.x=0.12)");
         }
     }
 }
@@ -61,7 +61,7 @@ static void check_range(lua_State *L, const given_t *given, double least, double
     if (given->value < least || given->value > most) {
         char why[100];
         (void)snprintf(why, sizeof why, "out of range (expected %g to %g %s)", least, most, unit);
-        refuse(L, given, why);
+        refuse_error(L, given, why);
     }
 }
 
@@ -99,7 +99,7 @@ static size_t find_part(const char *name_of(size_t part), const char *field) {
 static void give_taught(lua_State *L, const given_t *given, wh_vec3_t *taught, size_t axis) {
     wh_real_t *const parts[] = {&taught->x, &taught->y, &taught->z};
     if (axis >= 3) {
-        refuse(L, given, "a station is turned for all of its robots (expected x, y or z)");
+        refuse_error(L, given, "a station is turned for all of its robots (expected x, y or z)");
     } else {
         check_range(L, given, -WH_ERRORS_MOST_MM, WH_ERRORS_MOST_MM, "mm");
         *parts[axis] = (wh_real_t)given->value;
@@ -111,8 +111,8 @@ static void give_part(lua_State *L, const given_t *given, wh_displacement_t *all
     const bool is_turn = strcmp(given->field, wafer_name(WH_SPREADS - 1)) == 0;
     const double most = axis < 3 ? WH_ERRORS_MOST_MM : is_turn ? WH_ERRORS_MOST_TURN_DEG : WH_ERRORS_MOST_DEG;
     if (index == WH_NONE) {
-        refuse(L, given,
-               "nothing of the layout has that name (expected a station's, a wafer's, a gripper's)");
+        refuse_error(L, given,
+                     "nothing of the layout has that name (expected a station's, a wafer's, a gripper's)");
     }
     check_range(L, given, -most, most, axis < 3 ? "mm" : "degrees");
     *wh_displacement_part(&all[index], axis) = (wh_real_t)given->value;
@@ -122,7 +122,7 @@ static void give_valve(lua_State *L, const wh_layout_t *layout, const given_t *g
     const int32_t gripper = wh_layout_find_gripper(layout, given->name);
     const double longest = WH_STUDY_LAG_SLICES * (double)layout->slice_us / 1e6;
     if (gripper == WH_NONE) {
-        refuse(L, given, "no gripper of the layout has that name (expected GRIPPER.valve=SECONDS)");
+        refuse_error(L, given, "no gripper of the layout has that name (expected GRIPPER.valve=SECONDS)");
     }
     check_range(L, given, 0, longest < WH_ERRORS_MOST_S ? longest : WH_ERRORS_MOST_S, "s");
     to->valves[gripper] = (wh_real_t)given->value;
@@ -142,15 +142,16 @@ static void give_rim(lua_State *L, const wh_layout_t *layout, const given_t *giv
     const int32_t wafer = wh_layout_find_wafer(layout, given->name);
     const double most = wh_rim_draw_most(draw);
     if (wafer == WH_NONE) {
-        refuse(L, given, "no wafer of the layout has that name (expected WAFER.FIELD=VALUE)");
+        refuse_error(L, given, "no wafer of the layout has that name (expected WAFER.FIELD=VALUE)");
     }
     if (!wh_layout_has_rims(layout)) {
-        refuse(L, given,
-               "no prealigner of the layout has a sensor that would see it, no station beams, no gripper an "
-               "edge grip (expected one)");
+        refuse_error(
+            L, given,
+            "no prealigner of the layout has a sensor that would see it, no station beams, no gripper an "
+            "edge grip (expected one)");
     }
     if (!wh_rim_draw_concerns(draw, layout->rims[wafer])) {
-        refuse(L, given, "the wafer's rim has no such thing (expected what it has)");
+        refuse_error(L, given, "the wafer's rim has no such thing (expected what it has)");
     }
     check_range(L, given, wh_rim_draw_is_size(draw) ? 0 : -most, most, wh_rim_draw_unit(draw));
     to->rims[wafer][draw] = given->value;
@@ -171,8 +172,8 @@ static bool give_beam(lua_State *L, const wh_layout_t *layout, const given_t *gi
     const double most = wh_beam_draw_most(of);
     check_range(L, given, wh_beam_draw_is_size(of) ? 0 : -most, most, wh_beam_draw_unit(of));
     if (!wh_beam_draw_fits(of, &layout->beams[beam], given->value)) {
-        refuse(L, given,
-               "together with what the layout has of the beam that is out of range (expected less)");
+        refuse_error(L, given,
+                     "together with what the layout has of the beam that is out of range (expected less)");
     }
     to->beams[beam][draw] = given->value;
     return true;
@@ -190,17 +191,17 @@ static void check_rim(lua_State *L, const wh_layout_t *layout, given_t *given, c
     }
     const int32_t wafer = wh_layout_find_wafer(layout, given->name);
     if (beside < (int)WH_RIM_DRAWS && to->rims[wafer][beside] == 0) {
-        refuse(L, given,
-               beside == (int)WH_RIM_SADDLE ? "there is no saddle (expected one, with WAFER.saddle)"
-                                            : "there is no chip (expected one, with WAFER.chip_depth)");
+        refuse_error(L, given,
+                     beside == (int)WH_RIM_SADDLE ? "there is no saddle (expected one, with WAFER.saddle)"
+                                                  : "there is no chip (expected one, with WAFER.chip_depth)");
     }
     if (!wh_rim_draw_leaves_rim(to->rims[wafer], layout->rims[wafer])) {
-        refuse(L, given, "what is given of the rim leaves none (expected smaller errors)");
+        refuse_error(L, given, "what is given of the rim leaves none (expected smaller errors)");
     }
     wh_rim_t changed = *layout->rims[wafer];
     (void)wh_rim_draw_apply(to->rims[wafer], &changed);
     if (!wh_layout_edges_take(layout, &changed)) {
-        refuse(L, given, "no edge grip takes a wafer with such a rim (expected smaller errors)");
+        refuse_error(L, given, "no edge grip takes a wafer with such a rim (expected smaller errors)");
     }
 }
 
@@ -235,7 +236,7 @@ static void give(lua_State *L, const wh_layout_t *layout, given_t *given, wh_giv
     } else if (strcmp(given->field, "valve") == 0) {
         give_valve(L, layout, given, to);
     } else {
-        refuse(
+        refuse_error(
             L, given,
             "no such error (expected of a station x, y, z, roll, pitch, yaw, of a wafer dx, dy, dz, tilt_x, "
             "tilt_y, turn, of its rim what a study draws, of a beam such as A.beam1 dx, dy, late, of a "

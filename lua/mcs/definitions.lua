@@ -33,12 +33,13 @@ return function(native, lookup, targets, words, wh)
 
   ------------------------------------------------------------------------------------------------- layouts
 
-  local ranges = native.ranges()
+  -- The text of a field, and the range of a number; commands have a station's range, too.
+  local function with_range(field)
+    return field.least and ("%s; from %.10g to %.10g"):format(field.text, field.least, field.most) or field.text
+  end
 
-  -- A number of a station has its range; commands have that range, too.
-  local function with_range(class, field)
-    local range = class.name == "station" and ranges[field.name]
-    return range and range[1] and ("%s; from %.10g to %.10g"):format(field.text, range[1], range[2]) or field.text
+  local function with_default(field)
+    return field.usual and with_range(field) .. "; by default " .. field.usual or with_range(field)
   end
 
   local function add_layouts()
@@ -46,7 +47,7 @@ return function(native, lookup, targets, words, wh)
     for _, class in ipairs(native.classes()) do
       open(class.name, class.text)
       for _, field in ipairs(class.fields) do
-        add_field(field.name, field.type, with_range(class, field), not field.required)
+        add_field(field.name, field.type, with_default(field), not field.required)
       end
       close()
       faults[#faults + 1] = class.name:find("^fault") and "waferhand." .. class.name or nil
@@ -83,7 +84,7 @@ return function(native, lookup, targets, words, wh)
   local of_stations = {}
   for _, class in ipairs(native.classes()) do
     for _, field in ipairs(class.name == "station" and class.fields or {}) do
-      of_stations[field.name] = with_range(class, field)
+      of_stations[field.name] = with_range(field)
     end
   end
 

@@ -69,19 +69,10 @@ static double find_usual(const wh_reader_field_t *row, const wh_reader_field_t *
 
 /* The default as a layout has it; nothing where there is none, or the field is required. */
 static void set_usual(lua_State *L, const wh_reader_field_t *row, double value) {
-    char text[40];
-    if (row->otherwise || row->required || !isfinite(value)) {
-        set_text(L, "usual", row->otherwise);
-        return;
+    char text[200];
+    if (wh_definitions_usual(row, value, text, sizeof text)) {
+        set_text(L, "usual", text);
     }
-    if (row->words) {
-        (void)snprintf(text, sizeof text, "\"%s\"", row->words[(size_t)value]);
-    } else if (strcmp(row->type, "boolean") == 0) {
-        (void)snprintf(text, sizeof text, "%s", value > 0 ? "true" : "false");
-    } else {
-        (void)snprintf(text, sizeof text, "%.12g", value);
-    }
-    set_text(L, "usual", text);
 }
 
 static void push_row(lua_State *L, const wh_reader_field_t *row, const wh_reader_field_t *fields) {
@@ -95,7 +86,7 @@ static void push_row(lua_State *L, const wh_reader_field_t *row, const wh_reader
     set_text(L, "unit", unit);
     lua_pushboolean(L, row->required);
     lua_setfield(L, -2, "required");
-    if (row->least < row->most && !row->words && strcmp(type, "boolean") != 0) {
+    if (wh_definitions_has_range(row)) {
         set_number(L, "least", row->least);
         set_number(L, "most", row->most);
     }

@@ -197,7 +197,7 @@ static void a_lock_pumps_with_and_without_a_wafer(void **state) {
     assert_true(clock_.is_pumping);
     pass(SLICE);
     assert_told(3, WH_CLOCK_PUMP_ENDS, WH_FLOW_NONE, 4 * S, 3 * S);
-    assert_string_equal(wh_clock_side_name(told[3].side), "atmosphere");
+    assert_string_equal(wh_flow_side_words[told[3].side], "atmosphere");
 }
 
 /* It is lifted and set down again, without leaving the station. */

@@ -1,8 +1,6 @@
 /* The fields of a cell whose robots are times alone. */
-#include "layout_tool.h"
+#include "layout_fields_internal.h"
 
-#define END                                                                                                  \
-    { NULL, NULL, NULL, false }
 #define TIMES "number|table<string, number>"
 
 const wh_reader_field_t wh_layout_timed_fields[] = {
@@ -15,35 +13,36 @@ const wh_reader_field_t wh_layout_timed_fields[] = {
 
 const wh_reader_field_t wh_layout_timed_robot_fields[] = {
     {"kind", "\"timed\"", "a robot that is times alone", true},
-    {"arms", "integer", "1 or 2; 1", false},
-    {"at", "string", "the station in front of which it begins; the first one that it serves", false},
+    {"arms", "integer", "how many", false, APART(1, 2, 1)},
+    {"at", "string", "the station in front of which it begins", false,
+     .otherwise = "the first one that it serves"},
     {"pick", TIMES, "s, or by station, with `default`", true},
     {"place", TIMES, "s, or by station, with `default`", true},
     {"move", TIMES, "s, or by pair as in [\"A>B\"], with `default`; of a pair that is there once, both ways",
      false},
-    {"swap", TIMES, "s, or by station; pick, move and place together", false},
-    {"speed", "number", "mm/s, in place of move: along the straight way between the stations' places", false},
+    {"swap", TIMES, "s, or by station", false, .otherwise = "pick, move and place together"},
+    {"speed", NUMBER, "mm/s, in place of move: along the straight way between the stations' places", false,
+     APART(1e-3, 1e6, ASKED)},
     END};
 
+static const char *const kinds[] = {"slots", "load_port", NULL};
+
 const wh_reader_field_t wh_layout_timed_station_fields[] = {
-    {"kind", "\"slots\"|\"load_port\"", "slots; a load port's carriers come and go", false},
-    {"slots", "integer", "1, of a load port 25", false},
-    {"at", "number[]", "mm, for robots with a speed", false},
-    {"by", "string|string[]|table<string, waferhand.timed_by>", "the robots that serve it; all", false},
-    {"process", "number", "s, from when the wafer lies there and the door is shut; 0", false},
-    {"window", "number", "s: the longest stay after the process", false},
-    {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},
-    {"pump", "waferhand.pump", "makes it a load lock", false},
-    {"state", "\"vacuum\"|\"atmosphere\"", "of a load lock at the beginning; atmosphere", false},
+    {"kind", WORD, "a load port's carriers come and go", false, APART_WORD(0, kinds)},
+    {"slots", "integer", "how many", false, APART(1, 100000, FOLLOWS), .otherwise = "1, of a load port 25"},
+    {"at", TRIPLE, "mm, for robots with a speed", false},
+    {"by", "string|string[]|table<string, waferhand.timed_by>", "the robots that serve it", false,
+     .otherwise = "all"},
+    STATION_TIMES(" and the door is shut", "waferhand.pump"),
     {"into", "integer[]", "slots of a load lock that only atmosphere's robots fill", false},
     {"out", "integer[]", "slots of a load lock that only vacuum's robots fill", false},
     {"door", "number|waferhand.timed_door", "s to open and to shut", false},
     END};
 
 const wh_reader_field_t wh_layout_timed_by_fields[] = {
-    {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock", false},
+    {"side", WORD, "of a load lock", false, APART_WORD(ASKED, wh_flow_side_words)},
     {"door", "number|waferhand.timed_door", "s, on this robot's side", false},
     END};
 
 const wh_reader_field_t wh_layout_timed_door_fields[] = {
-    {"open", "number", "s", true}, {"close", "number", "s", true}, END};
+    {"open", NUMBER, "s", true, SECONDS(ASKED)}, {"close", NUMBER, "s", true, SECONDS(ASKED)}, END};
