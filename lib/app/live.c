@@ -229,15 +229,11 @@ void wh_live_rest(void *user) {
     }
 }
 
-static int64_t time_of(const wh_mcs_t *mcs) {
-    return mcs->track.slice * mcs->track.slice_us;
-}
-
 static wh_news_t *news_of_command(const wh_mcs_t *mcs, wh_mcs_news_t what,
                                   const wh_command_record_t *command) {
     wh_news_t *news =
         wh_news_make(what == WH_MCS_COMMAND_BEGINS ? WH_NEWS_COMMAND_BEGINS : WH_NEWS_COMMAND_ENDED,
-                     time_of(mcs), command->text, command->message);
+                     wh_mcs_utime(mcs), command->text, command->message);
     news->task = command->task;
     news->line = command->line;
     news->begin_s = command->begin_s;
@@ -249,7 +245,7 @@ static wh_news_t *news_of_command(const wh_mcs_t *mcs, wh_mcs_news_t what,
 static wh_news_t *news_of_expectation(const wh_mcs_t *mcs) {
     const wh_record_t *record = wh_mcs_record(mcs);
     const wh_expectation_record_t *last = &record->expectations[record->expectation_count - 1];
-    wh_news_t *news = wh_news_make(WH_NEWS_EXPECTED, time_of(mcs), last->text, NULL);
+    wh_news_t *news = wh_news_make(WH_NEWS_EXPECTED, wh_mcs_utime(mcs), last->text, NULL);
     news->line = last->line;
     news->good = last->ok;
     return news;
@@ -257,7 +253,7 @@ static wh_news_t *news_of_expectation(const wh_mcs_t *mcs) {
 
 static wh_news_t *news_of_station(const wh_mcs_t *mcs) {
     const wh_record_t *record = wh_mcs_record(mcs);
-    wh_news_t *news = wh_news_make(WH_NEWS_STATION, time_of(mcs), NULL, NULL);
+    wh_news_t *news = wh_news_make(WH_NEWS_STATION, wh_mcs_utime(mcs), NULL, NULL);
     news->station = record->station_events[record->station_event_count - 1];
     return news;
 }
@@ -268,7 +264,7 @@ static wh_news_t *news_of_end(const wh_mcs_t *mcs) {
     if (!record->ok) {
         wh_record_reason(record, reason, sizeof reason);
     }
-    wh_news_t *news = wh_news_make(WH_NEWS_ENDED, time_of(mcs), record->ok ? NULL : reason, NULL);
+    wh_news_t *news = wh_news_make(WH_NEWS_ENDED, wh_mcs_utime(mcs), record->ok ? NULL : reason, NULL);
     news->good = record->ok;
     return news;
 }
@@ -312,8 +308,8 @@ static void hear_turn(void *user, const wh_mcs_t *mcs, const char *what) {
         live->next.turn(live->next.user, mcs, what);
     }
     if (live->showing) {
-        wh_news_t *news = wh_news_make(what ? WH_NEWS_WAITS : WH_NEWS_GOES_ON, time_of(mcs), what, NULL);
-        news->task = mcs->recorder.number;
+        wh_news_t *news = wh_news_make(what ? WH_NEWS_WAITS : WH_NEWS_GOES_ON, wh_mcs_utime(mcs), what, NULL);
+        news->task = wh_mcs_task(mcs);
         wh_showing_tell(live->showing, news);
     }
 }

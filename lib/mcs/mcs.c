@@ -72,6 +72,14 @@ bool wh_mcs_is_script(const wh_mcs_t *mcs) {
     return mcs->wanted.is_file;
 }
 
+int64_t wh_mcs_utime(const wh_mcs_t *mcs) {
+    return mcs->track.slice * mcs->track.slice_us;
+}
+
+int32_t wh_mcs_task(const wh_mcs_t *mcs) {
+    return mcs->recorder.number;
+}
+
 const char *wh_mcs_running_text(const wh_mcs_t *mcs) {
     const wh_recorder_t *recorder = &mcs->recorder;
     return recorder->running != WH_NONE ? recorder->record->commands[recorder->running].text : NULL;

@@ -27,6 +27,12 @@ const wh_record_t *wh_mcs_record(const wh_mcs_t *mcs);
 /* True if a script's file is run: only then does the run have a verdict. False: lines of a session. */
 bool wh_mcs_is_script(const wh_mcs_t *mcs);
 
+/* Simulated microseconds so far. */
+int64_t wh_mcs_utime(const wh_mcs_t *mcs);
+
+/* The number of the running task; 0: the script itself. */
+int32_t wh_mcs_task(const wh_mcs_t *mcs);
+
 /* The text of the running command; null: none runs. */
 const char *wh_mcs_running_text(const wh_mcs_t *mcs);
 

@@ -12,7 +12,7 @@
 /* native.utime(): simulated microseconds so far. */
 static int read_utime(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    lua_pushinteger(L, mcs->track.slice * mcs->track.slice_us);
+    lua_pushinteger(L, wh_mcs_utime(mcs));
     return 1;
 }
 

@@ -135,7 +135,7 @@ int64_t wh_session_slice_us(const wh_session_t *session) {
 }
 
 int64_t wh_session_time_us(const wh_session_t *session) {
-    return session->mcs.track.slice * session->mcs.track.slice_us;
+    return wh_mcs_utime(&session->mcs);
 }
 
 const wh_layout_t *wh_session_layout(const wh_session_t *session) {
