@@ -44,6 +44,7 @@ struct wh_live {
     wh_http_t *http;
     char id[40];
     wh_http_file_t files[FILES];
+    char *texts[FILES];         /* theirs */
     int64_t looked_us, told_us; /* by the wall clock */
     wh_live_meter_t meter;
 };
@@ -344,7 +345,7 @@ void wh_live_heard(void *user, const wh_transcript_entry_t *entry) {
             (void)wh_transcript_escape(text, sizeof text, entry->bytes, entry->size);
         }
         wh_news_t *news = wh_news_make(WH_NEWS_FRAME, entry->time_us, text, entry->port);
-        news->line = entry->kind;
+        news->line = (int)entry->kind;
         wh_showing_tell(live->showing, news);
     }
 }
@@ -353,37 +354,38 @@ bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout) {
     if (!live || !layout->tool) {
         return true;
     }
-    fprintf(stderr, "%s: --page: nothing to show (expected robots with axes: here they are times alone)\n",
-            layout->path);
+    (void)fprintf(stderr,
+                  "%s: --page: nothing to show (expected robots with axes: here they are times alone)\n",
+                  layout->path);
     return false;
 }
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-static bool make_file(wh_http_file_t *file, const char *path, const char *type, const char *name,
-                      const char *title) {
-    char message[WH_PAGE_MESSAGE_BYTES] = "";
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = wh_memory_need(open_memstream(&text, &size));
-    const bool made = wh_page_write(out, name, title, "", 0, message);
-    (void)fclose(out);
-    *file = (wh_http_file_t){path, type, wh_memory_need(text), size};
-    if (!made) {
-        fprintf(stderr, "--page: %s\n", message);
-    }
-    return made;
-}
+/* The page's files, each with its template. */
+static const struct {
+    const char *path, *type, *name;
+} files[FILES] = {
+    [FILE_PAGE] = {"/", "text/html; charset=utf-8", WH_PAGE_LIVE},
+    [FILE_SCRIPTS] = {"/page.js", "text/javascript; charset=utf-8", WH_PAGE_SCRIPTS},
+    [FILE_STYLE] = {"/page.css", "text/css; charset=utf-8", WH_PAGE_STYLE},
+    [FILE_FOREIGN] = {"/foreign.js", "text/javascript; charset=utf-8", WH_PAGE_FOREIGN},
+};
 
 static bool make_files(wh_live_t *live) {
-    const char *title = live->options.title;
-    return make_file(&live->files[FILE_PAGE], "/", "text/html; charset=utf-8", WH_PAGE_LIVE, title) &&
-           make_file(&live->files[FILE_SCRIPTS], "/page.js", "text/javascript; charset=utf-8",
-                     WH_PAGE_SCRIPTS, title) &&
-           make_file(&live->files[FILE_STYLE], "/page.css", "text/css; charset=utf-8", WH_PAGE_STYLE,
-                     title) &&
-           make_file(&live->files[FILE_FOREIGN], "/foreign.js", "text/javascript; charset=utf-8",
-                     WH_PAGE_FOREIGN, title);
+    char message[WH_PAGE_MESSAGE_BYTES] = "";
+    bool made = true;
+    for (size_t i = 0; made && i < FILES; ++i) {
+        size_t size = 0;
+        FILE *out = wh_memory_need(open_memstream(&live->texts[i], &size));
+        made = wh_page_write(out, files[i].name, live->options.title, "", 0, message);
+        (void)fclose(out);
+        live->files[i] = (wh_http_file_t){files[i].path, files[i].type, wh_memory_need(live->texts[i]), size};
+    }
+    if (!made) {
+        (void)fprintf(stderr, "--page: %s\n", message);
+    }
+    return made;
 }
 
 static bool open_server(wh_live_t *live, const char *address) {
@@ -398,7 +400,7 @@ static bool open_server(wh_live_t *live, const char *address) {
                                      .user = live};
     live->http = wh_http_open(address, &source, problem);
     if (!live->http) {
-        fprintf(stderr, "--page: %s\n", problem);
+        (void)fprintf(stderr, "--page: %s\n", problem);
     }
     return live->http;
 }
@@ -412,7 +414,7 @@ static bool start(wh_live_t *live) {
     const int problem = pthread_create(&live->thread, NULL, serve, live);
     (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (problem != 0) {
-        fprintf(stderr, "--page: no thread: %s\n", strerror(problem));
+        (void)fprintf(stderr, "--page: no thread: %s\n", strerror(problem));
     }
     return problem == 0;
 }
@@ -424,7 +426,7 @@ static void free_live(wh_live_t *live) {
     wh_live_kept_begin(&live->kept, NULL);
     wh_feed_close(&live->feed);
     for (size_t i = 0; i < FILES; ++i) {
-        free((char *)(uintptr_t)live->files[i].text);
+        free(live->texts[i]);
     }
     if (live->wake >= 0) {
         (void)close(live->wake);
@@ -438,11 +440,11 @@ static bool open_control(wh_live_t *live, const wh_live_arguments_t *arguments) 
     const wh_live_options_t *options = &live->options;
     const wh_live_controlled_t controlled = arguments->controls ? options->controlled : WH_LIVE_NO_CONTROL;
     if (arguments->controls && options->uncontrolled) {
-        fprintf(stderr, "--page-control: %s\n", options->uncontrolled);
+        (void)fprintf(stderr, "--page-control: %s\n", options->uncontrolled);
         return false;
     }
     if (!wh_live_control_begin(&live->control, controlled, options->rate)) {
-        fprintf(stderr, "--page-control: no token: %s\n", strerror(errno));
+        (void)fprintf(stderr, "--page-control: no token: %s\n", strerror(errno));
         return false;
     }
     return true;
@@ -462,8 +464,8 @@ static void tell_place(const wh_live_t *live, bool opens) {
     char place[WH_HTTP_PLACE_BYTES + WH_LIVE_TOKEN + 16];
     (void)snprintf(place, sizeof place, "%s/%s%s", wh_http_place(live->http), is_controlled ? "#token=" : "",
                    is_controlled ? live->control.token : "");
-    fprintf(stderr, "%s: page at http://%s%s\n", live->options.speaker, place,
-            wh_http_is_local(live->http) ? "" : ": whoever reaches this machine can see the cell");
+    (void)fprintf(stderr, "%s: page at http://%s%s\n", live->options.speaker, place,
+                  wh_http_is_local(live->http) ? "" : ": whoever reaches this machine can see the cell");
     if (opens) {
         wh_live_browse(live->options.speaker, place);
     }
@@ -494,7 +496,7 @@ bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const 
 void wh_live_stay(const wh_live_t *live) {
     if (live && live->options.stays) {
         wh_catch_signals();
-        fprintf(stderr, "%s: the run is over; its page stays until Ctrl-C\n", live->options.speaker);
+        (void)fprintf(stderr, "%s: the run is over; its page stays until Ctrl-C\n", live->options.speaker);
         while (!wh_stop_requested) {
             (void)pause();
         }

@@ -29,7 +29,7 @@ void wh_live_browse(const char *speaker, const char *place) {
     }
     (void)posix_spawn_file_actions_destroy(&actions);
     if (status != 0) {
-        fprintf(stderr, "%s: --open: not opened (expected xdg-open, of Debian's package xdg-utils)\n",
-                speaker);
+        (void)fprintf(stderr, "%s: --open: not opened (expected xdg-open, of Debian's package xdg-utils)\n",
+                      speaker);
     }
 }

@@ -134,12 +134,12 @@ char *wh_live_kept_document(const wh_live_kept_t *kept, const wh_live_state_t *s
                                     .record = &kept->record,
                                     .signals = &kept->signals,
                                     .is_live = true};
-    fprintf(out, "{\"next\":%" PRIu64 ",\"id\":\"%s\",\"state\":", next, state->id);
+    (void)fprintf(out, "{\"next\":%" PRIu64 ",\"id\":\"%s\",\"state\":", next, state->id);
     json_t *told = state_of(kept, state);
     (void)json_dumpf(told, out, JSON_COMPACT);
-    fputs(",\"document\":", out);
+    (void)fputs(",\"document\":", out);
     (void)wh_document_write(&document, out);
-    fputs("}", out);
+    (void)fputs("}", out);
     (void)fclose(out);
     json_decref(told);
     json_decref(run);

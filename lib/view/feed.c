@@ -17,21 +17,23 @@ struct wh_feed_message {
 };
 
 static wh_feed_message_t *at(const wh_feed_t *feed, size_t i) {
-    return &feed->messages[(feed->first + i) % feed->capacity];
+    const size_t place = feed->first + i;
+    return &feed->messages[place < feed->capacity ? place : place - feed->capacity];
 }
 
 static void let_go(wh_feed_message_t *message) {
-    if (--*message->users == 0) {
+    if (message->users && --*message->users == 0) {
         free(message->text);
         free(message->users);
     }
+    *message = (wh_feed_message_t){0};
 }
 
 static void drop_first(wh_feed_t *feed) {
     wh_feed_message_t *first = at(feed, 0);
     feed->bytes -= first->size;
     let_go(first);
-    feed->first = (feed->first + 1) % feed->capacity;
+    feed->first = feed->first + 1 < feed->capacity ? feed->first + 1 : 0;
     --feed->count;
 }
 
