@@ -30,6 +30,8 @@ static const wh_option_t options[] = {
     {"rate", 0, "FACTOR",
      "With --page: let simulated time pass so much faster than the wall clock (default 1)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
+    {"until-steady", 0, NULL, WH_RUN_STEADY_HELP, WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, run.run.until_steady)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 

@@ -68,6 +68,11 @@ void wh_run_counting_check(const void *filled, struct argp_state *state);
 #define WH_RUN_COUNTED_HELP                                                                                  \
     "Leave out slices in which nothing can be decided; a cell with collision = true is played in full"
 
+/* The help of --until-steady. */
+#define WH_RUN_STEADY_HELP                                                                                   \
+    "End a flow by times alone as soon as all in it repeats but for the time: its cycle is that of a lot "   \
+    "without end"
+
 /* The reason why errors do not go with options that describe the cell. */
 #define WH_RUN_ERRORS_ALONE "--error does not go with %s, which tells of the cell as its layout says"
 

@@ -29,6 +29,8 @@ static const wh_option_t options[] = {
      "Run once as it is, and once for each mechanism and station of the cell, which takes PERCENT less time; "
      "tell what each gains, the greatest first",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, by)},
+    {"until-steady", 0, NULL, WH_RUN_STEADY_HELP, WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, run.run.until_steady)},
     {"best", 0, "N",
      "Search for the shortest schedule of the script's flow, a small one of timed robots, with at most N "
      "nodes a "

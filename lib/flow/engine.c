@@ -192,6 +192,7 @@ void wh_flow_engine_open(wh_flow_engine_t *engine, const wh_flow_tool_t *tool, c
     engine->state.listener = (wh_flow_listener_t){engine, hear, pass_on, NULL};
     engine->state.outside = outside;
     wh_flow_rules_open(&engine->rules, &engine->state);
+    engine->steadily = plan->ends_steady ? wh_flow_steadily_open(tool, plan) : NULL;
 }
 
 static int64_t end_with(wh_flow_engine_t *engine, wh_flow_end_t end) {
@@ -208,19 +209,46 @@ static void go_to(wh_flow_state_t *state, int64_t now_us) {
     }
 }
 
+/* Once more wafers are at their ends. */
+static bool is_steady(wh_flow_engine_t *engine) {
+    if (!engine->steadily || engine->count == engine->looked) {
+        return false;
+    }
+    engine->looked = engine->count;
+    engine->period = wh_flow_steadily_look(engine->steadily, &engine->state, engine->ends_us, engine->count,
+                                           &engine->cycle_us);
+    return engine->period > 0;
+}
+
+/* Plays this instant as often as something begins in it. True if the flow is over then, with its end. */
+static bool play_on(wh_flow_engine_t *engine, int64_t *next_us) {
+    wh_flow_state_t *state = &engine->state;
+    *next_us = state->now_us;
+    while (*next_us == state->now_us) {
+        play_instant(state, &engine->rules, &engine->asked);
+        if (state->cause || state->over == state->plan->wafer_count) {
+            (void)end_with(engine, state->cause ? WH_FLOW_BROKEN : WH_FLOW_DONE);
+            return true;
+        }
+        *next_us = find_next(state, &engine->rules, &engine->repeat, &engine->asked);
+    }
+    if (is_steady(engine)) {
+        tell_late(state);
+        (void)end_with(engine, state->cause ? WH_FLOW_BROKEN : WH_FLOW_CUT);
+        return true;
+    }
+    return false;
+}
+
 int64_t wh_flow_engine_step(wh_flow_engine_t *engine, int64_t now_us) {
     wh_flow_state_t *state = &engine->state;
+    int64_t next_us = WH_FLOW_NEVER;
     if (now_us > state->plan->until_us) {
         return end_with(engine, cut(state));
     }
     go_to(state, now_us);
-    int64_t next_us = state->now_us;
-    while (next_us == state->now_us) {
-        play_instant(state, &engine->rules, &engine->asked);
-        if (state->cause || state->over == state->plan->wafer_count) {
-            return end_with(engine, state->cause ? WH_FLOW_BROKEN : WH_FLOW_DONE);
-        }
-        next_us = find_next(state, &engine->rules, &engine->repeat, &engine->asked);
+    if (play_on(engine, &next_us)) {
+        return WH_FLOW_NEVER;
     }
     if (next_us == WH_FLOW_NEVER && !wh_flow_is_real_busy(state)) {
         return end_with(engine, WH_FLOW_STUCK);
@@ -231,6 +259,7 @@ int64_t wh_flow_engine_step(wh_flow_engine_t *engine, int64_t now_us) {
 
 void wh_flow_engine_close(wh_flow_engine_t *engine) {
     free(engine->ends_us);
+    wh_flow_steadily_close(engine->steadily);
     wh_flow_repeat_close(&engine->repeat);
     wh_flow_rules_close(&engine->rules, engine->state.tool);
     wh_flow_state_close(&engine->state);

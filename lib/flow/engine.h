@@ -6,6 +6,7 @@
 #include "flow.h"
 #include "repeat.h"
 #include "rules.h"
+#include "steadily.h"
 
 /* Read `state`, `is_over` and `end`; the rest is internal. Must not be moved once it is open. */
 typedef struct {
@@ -17,6 +18,10 @@ typedef struct {
     wh_flow_listener_t listener;
     int64_t *ends_us; /* of the last placings of wafers that count */
     size_t count, capacity;
+    size_t looked;                /* how many of them there were when it was seen whether it is steady */
+    wh_flow_steadily_t *steadily; /* null: nobody asks */
+    int32_t period;               /* of wafers, once it is steady; 0: it is not known to be */
+    int64_t cycle_us;             /* of so many */
     uint64_t asked;
 } wh_flow_engine_t;
 

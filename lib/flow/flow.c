@@ -29,7 +29,11 @@ void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     if (engine->listener.end) {
         engine->listener.end(engine->listener.context, state);
     }
-    if (result->end == WH_FLOW_DONE || result->end == WH_FLOW_CUT) {
+    if (result->end == WH_FLOW_CUT && engine->period > 0) {
+        result->is_steady = true;
+        result->period = engine->period;
+        result->cycle_us = engine->cycle_us;
+    } else if (result->end == WH_FLOW_DONE || result->end == WH_FLOW_CUT) {
         result->no_cycle = wh_flow_find_cycle(state->tool, plan, engine->ends_us, engine->count,
                                               &result->period, &result->cycle_us);
     } else {

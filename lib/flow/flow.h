@@ -18,6 +18,7 @@ typedef struct {
     int64_t cycle_us;    /* over `period` wafers; WH_FLOW_NEVER if there is no steady cycle */
     int32_t period;
     char *no_cycle; /* why there is none; null: there is one */
+    bool is_steady; /* it was cut because it was steady: the cycle is that of a lot without end */
     size_t over;    /* wafers at their ends, without dummies */
     size_t left;    /* wafers that are not at their ends, with dummies */
     char *why;      /* null if done; see wh_flow_result_close */

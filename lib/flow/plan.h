@@ -112,6 +112,7 @@ typedef struct {
     wh_flow_on_problem_t on_problem; /* may be null */
     void *own_context;               /* of both */
     int64_t until_us;                /* WH_FLOW_NEVER: until all wafers are there */
+    bool ends_steady;                /* it is cut as soon as it is steady: see steadily.h */
     int64_t takt_us;                 /* the least time between two wafers' starts */
     bool is_safe; /* shipped rules leave out transfers after which wafers could block each other */
 } wh_flow_plan_t;

@@ -219,10 +219,12 @@ static int play_flow(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_flow_tool_t *tool = mcs->layout->tool;
     wh_flow_t *flow = wh_flow_read_word(L, mcs, tool);
+    flow->plan.ends_steady = mcs->wanted.until_steady;
     wh_flow_own_open(L, tool, &flow->plan);
     wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
                     &flow->figures);
     const bool has_failed = wh_flow_own_close(L, &flow->plan);
+    flow->plan.ends_steady = false;
     if (flow->has_gains && !has_failed) {
         flow->figures.gains = wh_flow_gains(tool, &flow->plan);
     }

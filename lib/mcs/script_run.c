@@ -130,6 +130,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->record.error_count = options->error_count;
     run->record.trial = options->error_count > 0 ? NULL : options->trial;
     run->mcs.wanted.without_collisions = options->without_collisions;
+    run->mcs.wanted.until_steady = options->until_steady;
     run->mcs.wanted.counts = options->counts;
     run->mcs.wanted.verify = options->verify;
     run->mcs.wanted.faster = options->faster;

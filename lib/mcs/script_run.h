@@ -22,6 +22,7 @@ typedef struct {
     const char *const *errors;
     size_t error_count;
     bool without_collisions;   /* no collision check, whatever the layout says */
+    bool until_steady;         /* a flow by times alone ends as soon as it is steady */
     wh_mcs_count_t counts;     /* whether slices are left out */
     uint64_t verify;           /* stretches of them that are played all the same */
     size_t faster;             /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */

@@ -189,6 +189,7 @@ typedef struct {
     bool keeps_segments;     /* collect the played segments, for --segments */
     bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
+    bool until_steady;       /* a flow by times alone ends as soon as it is steady */
     wh_mcs_count_t counts;
     uint64_t verify; /* so many stretches of slices that could be left out are played, see verify.h */
     size_t faster;   /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */

@@ -242,6 +242,9 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
         flow->line, ends[result->end], result->why, (long long)result->over, (long long)result->left,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
+    if (result->is_steady) {
+        wh_json_put(object, "ended_steady", json_true());
+    }
     (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g", result->no_cycle,
                       result->may_block, (double)figures->end_us / 1e6, (double)flow->began_us / 1e6);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;

@@ -270,7 +270,8 @@ static void print_cut(const wh_printer_t *printer) {
         const wh_flow_figures_t *figures = &record->flow->figures;
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         const size_t wafers = figures->plan->wafer_count;
-        fprintf(printer->out, "cut at %.10g s: %zu of %zu %s not at %s\n", (double)figures->end_us / 1e6,
+        fprintf(printer->out, "%s at %.10g s: %zu of %zu %s not at %s\n",
+                figures->result.is_steady ? "steady, and ended" : "cut", (double)figures->end_us / 1e6,
                 figures->result.left, wafers, wafers == 1 ? "wafer" : "wafers",
                 figures->result.left == 1 ? "its end" : "their ends");
     }
