@@ -165,6 +165,20 @@ void wh_flow_fail_word(const wh_mcs_t *mcs, const char *why) {
     fail(mcs->recorder.record, "", why, NULL);
 }
 
+/* A study counts the windows of each station as one expectation, met or not. */
+static void imply_windows(wh_record_t *record, const wh_flow_t *flow) {
+    const wh_flow_figures_t *figures = &flow->figures;
+    char text[600];
+    for (size_t s = 0; s < figures->tool->station_count; ++s) {
+        const wh_flow_window_t *window = &figures->stays.windows[s];
+        if (window->count > 0) {
+            (void)snprintf(text, sizeof text, "wafers out of %s within its window of %.6g s",
+                           figures->tool->stations[s].name, seconds(window->nearest.window_us));
+            wh_record_count_implied(record, flow->line, text, window->late == 0);
+        }
+    }
+}
+
 /* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was
  * asked for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or
  * null. */
@@ -180,7 +194,10 @@ static void judge_flow(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) 
         (void)snprintf(text, sizeof text, "%s out of %s at most %.6g s after its process; it stayed %.6g s",
                        figures->plan->wafers[stay->wafer].name, figures->tool->stations[stay->station].name,
                        seconds(stay->window_us), seconds(stay->taken_us - stay->done_us));
-        wh_record_add_expectation(record, flow->line, text, false);
+        wh_record_add_breach(record, flow->line, text);
+    }
+    if (!flow->is_lateness_told) {
+        imply_windows(record, flow);
     }
 }
 

@@ -73,15 +73,28 @@ void wh_record_add_expectation(wh_record_t *record, int line, const char *text, 
     *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, false, 0};
 }
 
-void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok) {
+/* The bytes of what is expected, before what came of it; 0: all of the text. */
+static size_t name_in(const char *text) {
+    const char *found = strstr(text, "; ");
+    return found ? (size_t)(found - text) : 0;
+}
+
+void wh_record_count_implied(wh_record_t *record, int line, const char *text, bool ok) {
     record->implied = wh_array_grow(record->implied, record->implied_count, &record->implied_capacity,
                                     sizeof *record->implied);
-    const char *found = strstr(text, "; ");
-    const size_t name = found ? (size_t)(found - text) : 0;
     record->implied[record->implied_count++] =
-        (wh_expectation_record_t){line, wh_text_copy(text), ok, true, name};
+        (wh_expectation_record_t){line, wh_text_copy(text), ok, true, name_in(text)};
+}
+
+void wh_record_add_breach(wh_record_t *record, int line, const char *text) {
+    *add_expectation(record) =
+        (wh_expectation_record_t){line, wh_text_copy(text), false, true, name_in(text)};
+}
+
+void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok) {
+    wh_record_count_implied(record, line, text, ok);
     if (!ok) {
-        *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, true, name};
+        wh_record_add_breach(record, line, text);
     }
 }
 

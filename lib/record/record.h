@@ -172,6 +172,10 @@ void wh_record_add_expectation(wh_record_t *record, int line, const char *text, 
 /* Adds an expectation that nobody wrote down. Behind "; " the text tells the findings. */
 void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok);
 
+/* The two halves of it: what a study counts, met or not, and what a run tells, because it is not met. */
+void wh_record_count_implied(wh_record_t *record, int line, const char *text, bool ok);
+void wh_record_add_breach(wh_record_t *record, int line, const char *text);
+
 /* The findings begin after so many bytes of the last expectation's text. */
 void wh_record_name_expectation(wh_record_t *record, size_t bytes);
 
