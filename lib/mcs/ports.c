@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../math/hash.h"
 #include "../script/wh_module_values.h"
 #include "clocks.h"
 
@@ -157,8 +158,8 @@ static void look(struct wh_ports *ports, int32_t number, int64_t now_us,
     }
 }
 
-static bool is_same_place(const wh_pose_t *a, const wh_pose_t *b) {
-    return memcmp(a, b, sizeof *a) == 0;
+bool wh_ports_is_same_place(const wh_pose_t *a, const wh_pose_t *b) {
+    return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
 }
 
 /* The simulator has done what its state shows. */
@@ -166,7 +167,7 @@ static void confirm_orders(struct wh_ports *ports, const wh_state_t *state) {
     size_t left = 0;
     for (size_t i = 0; i < ports->state->order_count; ++i) {
         const wh_load_port_order_t *order = &ports->orders[i];
-        if (!is_same_place(&state->wafers[order->wafer].base_from_wafer, &order->base_from_wafer)) {
+        if (!wh_ports_is_same_place(&state->wafers[order->wafer].base_from_wafer, &order->base_from_wafer)) {
             ports->orders[left++] = *order;
         }
     }

@@ -97,6 +97,9 @@ void wh_ports_take_wafers(struct wh_ports *ports, int32_t number);
 /* The wafers as they lie when a run begins: in their carriers, or in the cell. */
 void wh_ports_begin_wafers(struct wh_ports *ports);
 
+/* True if two poses are equal to the last bit. */
+bool wh_ports_is_same_place(const wh_pose_t *a, const wh_pose_t *b);
+
 /* Keeps the event of a port, tells it, and does what goes with it: a wh_load_port_teller_t. */
 typedef struct {
     struct wh_ports *ports;

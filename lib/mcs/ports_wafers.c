@@ -1,7 +1,6 @@
 /* The events of load ports are kept and told, and wafers come and go with carriers. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "../layout/grips.h"
 #include "../trial/trial_cell.h"
@@ -97,7 +96,7 @@ static void keep_place(const struct wh_ports *ports, int32_t number, wh_carried_
     const wh_station_t *place = &ports->mcs->real->places[ports->of[number].station];
     const wh_pose_t base_from_slot = wh_station_slot(place, slot);
     const wh_pose_t as_brought = place_of(ports, number, carried);
-    if (slot != carried->slot || memcmp(&as_brought, base_from_wafer, sizeof as_brought) != 0) {
+    if (slot != carried->slot || !wh_ports_is_same_place(&as_brought, base_from_wafer)) {
         carried->slot = slot;
         carried->slot_from_wafer = wh_pose_relative(&base_from_slot, base_from_wafer);
     }
