@@ -46,11 +46,11 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_fault_validate                64    184      24     96
- *     stack of wh_faults_validate               88    216      56    128
- *     stack of wh_faults_check                 112    232      72    144
+ *     stack of wh_fault_validate                64    192      24    104
+ *     stack of wh_faults_validate               88    224      56    136
+ *     stack of wh_faults_check                 112    240      72    152
  *     stack of wh_faults_take                   48     40      48     40
- *     stack of wh_faults_advance               176    264     132    168
+ *     stack of wh_faults_advance               176    264     140    168
  *     stack of wh_faults_overrule               80     64      72     56
  *     stack of wh_faults_of_vacuum              96     96      56     56
  *     stack of wh_faults_sensors                 4      8       0      8

@@ -5,9 +5,9 @@
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_physics_default             2384   2384    1384   1408
- *     stack of wh_physics_validate              96    208      56    120
+ *     stack of wh_physics_validate              96    216      56    128
  *     stack of wh_physics_state_start          248    240     192    184
- *     stack of wh_physics_state_validate       128    256      88    160
+ *     stack of wh_physics_state_validate       128    264      88    168
  *     stack of wh_physics_state_sensors         16     20       8     24
  *     stack of wh_physics_state_hash           152    176     144    176
  *     size of wh_physics_t                    2280           1336
