@@ -31,11 +31,12 @@ static void put_share(const wh_printer_t *printer, int64_t slices, const char *w
     }
 }
 
-/* A steady cycle first: what the run is with its start and its end comes behind it. */
+/* A steady cycle first: what the run is with its start and its end comes behind it. A flow has told its own. */
 bool wh_print_figure(const wh_printer_t *printer) {
     const wh_throughput_t throughput = wh_throughput(printer->record);
     const wh_steady_cycle_t steady = wh_steady_cycle(printer->record);
-    const bool is_steady = steady.found == WH_STEADY_FOUND && steady.figure == WH_FIGURE_GIVEN;
+    const bool is_steady =
+        steady.found == WH_STEADY_FOUND && steady.figure == WH_FIGURE_GIVEN && printer->record->flow == NULL;
     if (is_steady) {
         fprintf(printer->out, "%.1f wafers per hour: %zu in %.3f s, the first steady cycle; ",
                 steady.wafers_per_hour, steady.wafers, steady.seconds);

@@ -267,11 +267,10 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     const wh_throughput_t throughput = wh_throughput(record);
     point->simulated_s = record->simulated_s;
     point->hash = record->hash;
-    if (throughput.figure == WH_FIGURE_GIVEN) {
-        point->wafers_per_hour = throughput.wafers_per_hour;
-    }
     if (record->flow) {
         measure_flow(record->flow, point);
+    } else if (throughput.figure == WH_FIGURE_GIVEN) {
+        point->wafers_per_hour = throughput.wafers_per_hour;
     }
     measure_picks(record, point);
     note(record, point);
