@@ -70,7 +70,7 @@ static void open_root(const search_t *search, node_t *node) {
         node->at[w] = HOME;
     }
     for (int32_t r = 0; r < search->problem.robots; ++r) {
-        node->robot_at[r] = (int8_t)search->problem.tool->robots[r].at;
+        node->robot_at[r] = (int16_t)search->problem.tool->robots[r].at;
     }
     memset(node->wafer, WH_FLOW_NONE, sizeof node->wafer);
     memset(node->taken_us, 0xff, sizeof node->taken_us);
@@ -81,10 +81,10 @@ static void open_root(const search_t *search, node_t *node) {
 static uint64_t kind_of(const problem_t *problem, const node_t *node) {
     uint64_t hash = WH_HASH_START;
     for (int32_t w = 0; w < problem->wafers; ++w) {
-        hash = wh_hash_word(hash, (uint64_t)(uint8_t)node->step[w] << 8 | (uint8_t)node->at[w]);
+        hash = wh_hash_word(hash, (uint64_t)(uint16_t)node->step[w] << 16 | (uint16_t)node->at[w]);
     }
     for (int32_t r = 0; r < problem->robots; ++r) {
-        hash = wh_hash_word(hash, (uint8_t)node->robot_at[r]);
+        hash = wh_hash_word(hash, (uint16_t)node->robot_at[r]);
     }
     return hash;
 }
@@ -114,7 +114,7 @@ static void move_wafer(const problem_t *problem, node_t *node, const doing_t *do
         node->empty_us[node->at[w]] = doing->begin_us + pick_us;
     }
     if (doing->to == WH_FLOW_NONE) {
-        node->at[w] = (int8_t)ON_ARM(doing->robot);
+        node->at[w] = (int16_t)ON_ARM(doing->robot);
         node->ready_us[w] = placed_us;
         return;
     }
@@ -124,8 +124,8 @@ static void move_wafer(const problem_t *problem, node_t *node, const doing_t *do
     if (doing->place != WH_FLOW_NONE) {
         const wh_flow_step_t *step = wh_flow_step_of(problem->plan, w, node->step[w]);
         node->ready_us[w] += wh_flow_step_us(step, &problem->tool->stations[doing->to]);
-        node->at[w] = (int8_t)doing->place;
-        node->wafer[doing->place] = (int8_t)w;
+        node->at[w] = (int16_t)doing->place;
+        node->wafer[doing->place] = (int16_t)w;
         node->taken_us[doing->place] = doing->begin_us;
     }
 }
@@ -185,7 +185,7 @@ static void try_doing(search_t *search, size_t level, const node_t *node, const 
     move_wafer(&search->problem, &next, doing, over_us);
     next.now_us = doing->begin_us;
     next.free_us[doing->robot] = over_us;
-    next.robot_at[doing->robot] = (int8_t)(doing->to != WH_FLOW_NONE ? doing->to : doing->from);
+    next.robot_at[doing->robot] = (int16_t)(doing->to != WH_FLOW_NONE ? doing->to : doing->from);
     wh_best_bound(&search->problem, &next);
     if (next.bound_us >= search->best->makespan_us) {
         return;

@@ -12,12 +12,12 @@ typedef struct {
     int64_t now_us, bound_us, rest_us; /* rest: of equal bounds the lesser one is the better */
     uint64_t kind;                     /* hash of all but times */
     int32_t parent;                    /* the step by which it came: see step_t */
-    int8_t step[WH_BEST_WAFERS];
-    int8_t at[WH_BEST_WAFERS]; /* a place, HOME, OVER, or an arm */
+    int16_t step[WH_BEST_WAFERS];
+    int16_t at[WH_BEST_WAFERS]; /* a place, HOME, OVER, or an arm */
     int64_t ready_us[WH_BEST_WAFERS];
-    int8_t robot_at[WH_BEST_ROBOTS]; /* the station */
+    int16_t robot_at[WH_BEST_ROBOTS]; /* the station */
     int64_t free_us[WH_BEST_ROBOTS];
-    int8_t wafer[WH_BEST_PLACES];      /* that lies there, or WH_FLOW_NONE */
+    int16_t wafer[WH_BEST_PLACES];     /* that lies there, or WH_FLOW_NONE */
     int64_t picked_us[WH_BEST_PLACES]; /* the begin of the last pick out of it */
     int64_t empty_us[WH_BEST_PLACES];  /* and its end */
     int64_t taken_us[WH_BEST_PLACES];  /* the begin of the last doing that brought a wafer there */

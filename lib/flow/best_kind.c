@@ -93,7 +93,7 @@ static char *refuse_steps(const wh_flow_plan_t *plan) {
 
 static char *refuse_size(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t places) {
     if (plan->wafer_count > WH_BEST_WAFERS || tool->robot_count > WH_BEST_ROBOTS || places > WH_BEST_PLACES ||
-        tool->station_count > INT8_MAX) {
+        tool->station_count > INT16_MAX) {
         return refuse(NULL, "at most 8 wafers, 4 robots and 24 places");
     }
     if (plan->down_count > 0 || plan->takt_us > 0 || plan->until_us != WH_FLOW_NEVER) {

@@ -117,7 +117,7 @@ static void hasten(wh_limits_t *limits, double share) {
 static void hasten_axis(const wh_machine_t *machine, size_t axis, double share) {
     const wh_limits_t *limits = wh_machine_limits(machine, axis);
     wh_limits_t *own = NULL;
-    memcpy(&own, &limits, sizeof own);
+    memcpy(&own, &limits, sizeof(void *));
     hasten(own, share);
 }
 
@@ -141,7 +141,7 @@ static void hasten_robot(wh_layout_t *layout, int32_t robot, double share) {
 static void hasten_station(const wh_layout_t *layout, int32_t station, double share) {
     wh_layout_times_t *times = NULL;
     const int32_t ppm = (int32_t)lround(1e6 * share);
-    memcpy(&times, &layout->stations[station].times, sizeof times);
+    memcpy(&times, &layout->stations[station].times, sizeof(void *));
     times->of.less_ppm = ppm;
     times->of.process_us = wh_flow_less_us(times->of.process_us, ppm);
     times->of.clean_us = wh_flow_less_us(times->of.clean_us, ppm);
@@ -153,7 +153,7 @@ static void hasten_station(const wh_layout_t *layout, int32_t station, double sh
 
 static void hasten_in_tool(const wh_layout_t *layout, const paced_t *of, double share) {
     wh_flow_tool_t *tool = NULL;
-    memcpy(&tool, &layout->tool, sizeof tool);
+    memcpy(&tool, &layout->tool, sizeof(void *));
     wh_flow_shorten(tool, of->robot, of->station, (int32_t)lround(1e6 * share));
 }
 
