@@ -17,7 +17,7 @@
 #define ARENA ((size_t)64 << 20)
 #define CLASSES 26
 #define BORDER 32 /* before and behind each block; the class and size stand before it */
-#define OBJECTS 4
+#define OBJECTS 8
 #define SHADOW 8 /* bytes for each of AddressSanitizer's */
 
 typedef struct {
