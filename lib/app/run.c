@@ -124,7 +124,8 @@ static int run_published(arguments_t *arguments) {
 }
 
 static bool open_page(arguments_t *arguments, char **command) {
-    *command = wh_run_command(&arguments->run, false);
+    const bool is_named = arguments->page.address && arguments->run.run.script;
+    *command = is_named ? wh_run_command(&arguments->run, false) : NULL;
     const wh_live_options_t wanted = {.speaker = "run",
                                       .title = arguments->run.run.script,
                                       .reproduce = *command,

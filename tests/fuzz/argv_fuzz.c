@@ -81,6 +81,8 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 
 int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
+bool __wrap_wh_live_open(wh_live_t **live, const wh_live_arguments_t *arguments,
+                         const wh_live_options_t *options);
 bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 FILE *__wrap_wh_log_file(const char *path, const char **fault);
@@ -134,6 +136,15 @@ int __wrap_wh_run_and_print(wh_run_arguments_t *arguments) {
 }
 
 /* Two of the files are the same one. */
+/* No page is served. */
+bool __wrap_wh_live_open(wh_live_t **live, const wh_live_arguments_t *arguments,
+                         const wh_live_options_t *options) {
+    REQUIRE(refused || options->speaker != NULL);
+    REQUIRE(refused || arguments->address || !(arguments->opens || arguments->controls));
+    *live = NULL;
+    return true;
+}
+
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints) {
     const bool apart = __real_wh_files_are_apart(files, count, prints);
     refused = refused || !apart;
