@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "failed.h"
 #include "outside.h"
 #include "robots.h"
 #include "stations.h"
@@ -17,7 +18,8 @@ static void hear(void *context, const wh_flow_state_t *state, const wh_flow_even
     if (event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP) {
         const int32_t wafer = event->kind == WH_FLOW_EVENT_PLACE ? event->wafer : event->other;
         const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
-        if (state->wafers[wafer].step + 1 == wh_flow_last_step(state->plan, wafer) && !lot->is_dummy) {
+        const int32_t step = state->wafers[wafer].toward;
+        if (wh_flow_following(state, wafer, step, event->place) == WH_FLOW_NONE && !lot->is_dummy) {
             engine->ends_us =
                 wh_array_grow(engine->ends_us, engine->count, &engine->capacity, sizeof *engine->ends_us);
             engine->ends_us[engine->count++] = event->end_us;

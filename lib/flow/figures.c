@@ -5,6 +5,7 @@
 
 #include "../math/hash.h"
 #include "../text/array.h"
+#include "failed.h"
 #include "transfer.h"
 #include "waiting.h"
 
@@ -13,6 +14,8 @@ const char *const wh_flow_robot_class_names[WH_FLOW_ROBOT_CLASSES] = {
     "waits_place", "waits_clean", "waits_pump", "waits_down", "waits_robot", "idle"};
 const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES] = {
     "process", "blocked", "handled", "stored", "clean", "pump", "down", "empty"};
+
+const char *const wh_flow_fate_names[] = {"inside", "end", "shortened", "lost"};
 
 /* Cleans, pumps and failures of a place and its station, summed up to now. */
 typedef struct {
@@ -147,8 +150,11 @@ static void keep_visit(measure_t *measure, int32_t wafer) {
     figures->visits[figures->visit_count++] = measure->open[wafer];
 }
 
-static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
+static void end_visit(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event,
+                      int32_t wafer) {
     wh_flow_visit_t *visit = &measure->open[wafer];
+    visit->step = state->wafers[wafer].toward;
+    visit->is_end = measure->places[event->place].is_over;
     visit->place = event->place;
     visit->arm = event->arm;
     visit->place_us = event->begin_us;
@@ -170,6 +176,7 @@ static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
         note_coming(measure->figures, state, w);
         const bool is_taken = wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us;
         if (is_taken && !(wafer->robot == WH_FLOW_NONE && is_real_door_opening(state, wafer))) {
+            measure->open[w].step = wafer->toward != WH_FLOW_NONE ? wafer->toward : wafer->step + 1;
             measure->open[w].arm =
                 wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
             keep_visit(measure, w);
@@ -225,14 +232,29 @@ static void hear_placing(measure_t *measure, const wh_flow_state_t *state, const
               measure->places[event->place].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
     }
     go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
+    const int32_t step = state->wafers[wafer].toward;
     measure->places[event->place].is_over =
-        state->wafers[wafer].step + 1 == wh_flow_last_step(state->plan, wafer);
+        wh_flow_following(state, wafer, step, event->place) == WH_FLOW_NONE;
+    if (step > state->wafers[wafer].step + 1) {
+        measure->figures->fates[wafer] = WH_FLOW_FATE_SHORTENED;
+    }
     ++measure->figures->placed[event->station];
     if (measure->open) {
-        end_visit(measure, event, wafer);
+        end_visit(measure, state, event, wafer);
     }
     if (measure->open && event->kind == WH_FLOW_EVENT_SWAP) {
         measure->open[event->wafer].picked_us = event->end_us;
+    }
+}
+
+/* A route ends where its wafer lies, lost or shortened. */
+static void hear_end(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    const bool is_lost = state->wafers[event->wafer].is_lost;
+    account_wafer(measure, state, event->wafer, event->end_us);
+    measure->places[event->place].is_over = true;
+    measure->figures->fates[event->wafer] = is_lost ? WH_FLOW_FATE_LOST : WH_FLOW_FATE_SHORTENED;
+    if (!is_lost && measure->open && measure->visits[event->wafer] != WH_FLOW_NONE) {
+        measure->figures->visits[measure->visits[event->wafer]].is_end = true;
     }
 }
 
@@ -271,6 +293,10 @@ static void note_event(measure_t *measure, const wh_flow_event_t *event) {
 static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
     measure_t *measure = context;
     measure->figures->hash = hash_event(measure->figures->hash, event);
+    if (event->kind == WH_FLOW_EVENT_ENDS) {
+        hear_end(measure, state, event);
+        return;
+    }
     if (event->kind == WH_FLOW_EVENT_STAY) {
         hear_stay(measure, state, event);
     } else if (event->kind == WH_FLOW_EVENT_LEFT) {
@@ -348,6 +374,18 @@ static void take_back(measure_t *measure, const wh_flow_state_t *state, int32_t 
     place->since_us = state->now_us;
 }
 
+/* Those that are lost on an arm are told at last. */
+static void keep_fate(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t wafer) {
+    wh_flow_fate_t *fate = &figures->fates[wafer];
+    if (state->wafers[wafer].is_lost) {
+        *fate = WH_FLOW_FATE_LOST;
+    } else if (!state->wafers[wafer].is_over) {
+        *fate = WH_FLOW_FATE_INSIDE;
+    } else if (*fate == WH_FLOW_FATE_INSIDE) {
+        *fate = WH_FLOW_FATE_END;
+    }
+}
+
 static void end(void *context, const wh_flow_state_t *state) {
     measure_t *measure = context;
     wh_flow_event_t stay;
@@ -355,6 +393,7 @@ static void end(void *context, const wh_flow_state_t *state) {
         if (wh_flow_open_stay(state, w, &stay) && !state->tool->stations[stay.station].is_real) {
             wh_flow_stays_add(&measure->figures->stays, state, &stay);
         }
+        keep_fate(measure->figures, state, w);
     }
     for (size_t p = 0; p < state->tool->place_count; ++p) {
         const int32_t wafer = state->places[p].wafer;
@@ -385,6 +424,7 @@ static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool,
         .blocked_by_robot = wh_array_new(stations * robots, sizeof *figures->blocked_by_robot),
         .blocked_by_station = wh_array_new(stations * stations, sizeof *figures->blocked_by_station),
         .placed = wh_array_new(stations, sizeof *figures->placed),
+        .fates = wh_array_new(plan->wafer_count, sizeof *figures->fates),
     };
     wh_flow_stays_open(&figures->stays, tool);
 }
@@ -451,6 +491,7 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->blocked_by_robot);
     free(figures->blocked_by_station);
     free(figures->placed);
+    free(figures->fates);
     wh_flow_stays_close(&figures->stays);
     free(figures->parts);
     free(figures->gains);

@@ -30,7 +30,19 @@ extern const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES];
 typedef struct {
     int32_t wafer, step, robot, arm, from, place;
     int64_t pick_us, picked_us, place_us, placed_us, process_us, done_us;
+    bool is_end; /* its route ends there */
 } wh_flow_visit_t;
+
+/* How a wafer's route ended. */
+typedef enum {
+    WH_FLOW_FATE_INSIDE,    /* not yet, or it never came */
+    WH_FLOW_FATE_END,       /* at its end */
+    WH_FLOW_FATE_SHORTENED, /* at its end, without steps whose stations have failed */
+    WH_FLOW_FATE_LOST       /* in a station that failed, or on an arm with nowhere to go */
+} wh_flow_fate_t;
+
+/* "inside", "end", "shortened", "lost" */
+extern const char *const wh_flow_fate_names[];
 
 /* A station's own doing. */
 typedef struct {
@@ -61,6 +73,7 @@ typedef struct {
     wh_flow_stays_t stays;
     wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
+    wh_flow_fate_t *fates;   /* by wafer */
     int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;

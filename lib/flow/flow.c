@@ -15,13 +15,33 @@ static bool has_several_with_two(const wh_flow_tool_t *tool) {
     return has_two && tool->robot_count > 1;
 }
 
+static int by_time(const void *a, const void *b) {
+    const int64_t one = *(const int64_t *)a, other = *(const int64_t *)b;
+    return one < other ? -1 : one > other ? 1 : 0;
+}
+
+/* The times of the last placings of wafers that have gone their ways, dummies left out, in order. */
+static int64_t *list_ends(const wh_flow_state_t *state, size_t *count) {
+    int64_t *ends_us = wh_array_new(state->plan->wafer_count + 1, sizeof *ends_us);
+    *count = 0;
+    for (size_t w = 0; w < state->plan->wafer_count; ++w) {
+        const wh_flow_wafer_state_t *at = &state->wafers[w];
+        if (at->is_over && !at->is_lost && at->step > 0 &&
+            !state->plan->lots[state->plan->wafers[w].lot].is_dummy) {
+            ends_us[(*count)++] = at->entered_us;
+        }
+    }
+    qsort(ends_us, *count, sizeof *ends_us, by_time);
+    return ends_us;
+}
+
 void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     const wh_flow_state_t *state = &engine->state;
     const wh_flow_plan_t *plan = state->plan;
     *result = (wh_flow_result_t){.end = engine->end,
                                  .makespan_us = state->last_us,
                                  .cycle_us = WH_FLOW_NEVER,
-                                 .over = engine->count,
+                                 .lost = state->lost,
                                  .left = plan->wafer_count - state->over,
                                  .asked = engine->asked};
     result->may_block =
@@ -29,16 +49,18 @@ void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     if (engine->listener.end) {
         engine->listener.end(engine->listener.context, state);
     }
+    int64_t *ends_us = list_ends(state, &result->over);
     if (result->end == WH_FLOW_CUT && engine->period > 0) {
         result->is_steady = true;
         result->period = engine->period;
         result->cycle_us = engine->cycle_us;
     } else if (result->end == WH_FLOW_DONE || result->end == WH_FLOW_CUT) {
-        result->no_cycle = wh_flow_find_cycle(state->tool, plan, engine->ends_us, engine->count,
-                                              &result->period, &result->cycle_us);
+        result->no_cycle =
+            wh_flow_find_cycle(state->tool, plan, ends_us, result->over, &result->period, &result->cycle_us);
     } else {
         result->no_cycle = wh_text_copy("the flow did not go on to its end");
     }
+    free(ends_us);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(state);
     } else if (state->cause) {

@@ -1,5 +1,6 @@
 #include "locks.h"
 
+#include "failed.h"
 #include "outside.h"
 #include "transfer.h"
 
@@ -76,7 +77,11 @@ static bool is_able(const wh_flow_state_t *state, int32_t lock, int32_t robot, i
 
 static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer, wants_t *able,
                        wants_t *lying) {
-    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    const int32_t step = wh_flow_next_step(state, wafer);
+    if (step == WH_FLOW_NONE) {
+        return;
+    }
+    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, step);
     const bool is_out = wh_flow_station_of(state, wafer) == lock;
     if (state->wafers[wafer].done_us > state->now_us || (!is_out && !wh_flow_step_has(next, lock))) {
         return;

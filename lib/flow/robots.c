@@ -1,5 +1,6 @@
 #include "robots.h"
 
+#include "failed.h"
 #include "locks.h"
 #include "outside.h"
 #include "stations.h"
@@ -59,9 +60,10 @@ static void go(wh_flow_state_t *state, int32_t robot, int32_t to) {
 
 /* It counts in its next step from now on. */
 static void count_ahead(wh_flow_state_t *state, int32_t wafer) {
-    if (!state->wafers[wafer].is_counted) {
-        state->wafers[wafer].is_counted = true;
-        ++*count_of(state, wafer, state->wafers[wafer].step + 1);
+    if (state->wafers[wafer].toward == WH_FLOW_NONE) {
+        const int32_t next = wh_flow_next_step(state, wafer);
+        state->wafers[wafer].toward = next;
+        ++*count_of(state, wafer, next);
     }
 }
 
@@ -225,8 +227,27 @@ bool wh_flow_robot_begin(wh_flow_state_t *state, int32_t robot, const wh_flow_or
     }
 }
 
+/* The robot waits for a place that has failed, or for any at all. True if it goes to another one. */
+static bool turn_away(wh_flow_state_t *state, int32_t robot) {
+    wh_flow_robot_state_t *at = &state->robots[robot];
+    const int32_t wafer = at->order.wafer;
+    int32_t to = at->to;
+    const bool goes = wh_flow_turn_away(state, robot, wafer, &to);
+    at->to = to;
+    if (goes) {
+        go(state, robot, state->tool->place_stations[to]);
+        at->to = to;
+    } else if (state->wafers[wafer].is_over) {
+        rest(state, robot);
+    }
+    return goes;
+}
+
 bool wh_flow_robot_place(wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
+    if (at->to == WH_FLOW_NONE || wh_flow_has_failed(state, state->tool->place_stations[at->to])) {
+        return turn_away(state, robot);
+    }
     const wh_flow_place_t *place = &state->places[at->to];
     if (place->wafer != WH_FLOW_NONE || place->clean_us != WH_FLOW_NEVER || place->is_clean_due ||
         !wh_flow_may_enter(state, robot, at->station)) {
@@ -279,10 +300,11 @@ static void put_in(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t
     state->places[number].wafer = wafer;
     put->robot = put->taker = WH_FLOW_NONE;
     put->place = number;
-    put->is_moving = put->is_counted = false;
+    put->is_moving = false;
     put->heading = WH_FLOW_NONE;
     put->entered_us = state->now_us;
-    ++put->step;
+    put->step = put->toward;
+    put->toward = WH_FLOW_NONE;
     wh_flow_step_enter(state, wafer);
     state->last_us = state->now_us;
 }
@@ -310,7 +332,11 @@ static void end_pick(wh_flow_state_t *state, int32_t robot) {
     tell_action(state, robot, WH_FLOW_EVENT_PICK, wafer, WH_FLOW_NONE);
     if (at->order.what == WH_FLOW_TRANSFER) {
         const int32_t to = at->to;
-        go(state, robot, state->tool->place_stations[to]);
+        if (wh_flow_has_failed(state, state->tool->place_stations[to])) {
+            act(state, robot, WH_FLOW_WAITING, WH_FLOW_NEVER);
+        } else {
+            go(state, robot, state->tool->place_stations[to]);
+        }
         at->to = to;
     } else {
         state->wafers[wafer].is_moving = false;

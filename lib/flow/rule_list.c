@@ -2,11 +2,13 @@
 #include <stdio.h>
 
 #include "../text/array.h"
+#include "failed.h"
 #include "rules.h"
 #include "transfer.h"
 
 static bool leads_to(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
-    return wh_flow_step_has(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
+    const int32_t next = wh_flow_next_step(state, wafer);
+    return next != WH_FLOW_NONE && wh_flow_step_has(wh_flow_step_of(state->plan, wafer, next), station);
 }
 
 /* True if the line may mean this wafer, which lies in its station. */

@@ -1,6 +1,7 @@
 /* swap: a robot with two arms takes a wafer, and where its next place is full it exchanges the two, and
  * goes on with what it took until a place was empty. It takes one only if the exchanges that follow lead
  * to an empty place. */
+#include "failed.h"
 #include "rules.h"
 #include "safe.h"
 #include "transfer.h"
@@ -8,8 +9,11 @@
 /* The most exchanges in a row. */
 #define LONGEST 64
 
-static int32_t carried(const wh_flow_robot_state_t *robot) {
-    const int32_t a = robot->arms[0], b = robot->arms[1];
+/* The wafer that goes on first; one that is over stays on its arm. */
+static int32_t carried(const wh_flow_state_t *state, const wh_flow_robot_state_t *robot) {
+    int32_t a = robot->arms[0], b = robot->arms[1];
+    a = a != WH_FLOW_NONE && state->wafers[a].is_over ? WH_FLOW_NONE : a;
+    b = b != WH_FLOW_NONE && state->wafers[b].is_over ? WH_FLOW_NONE : b;
     if (a == WH_FLOW_NONE || b == WH_FLOW_NONE) {
         return a == WH_FLOW_NONE ? b : a;
     }
@@ -39,10 +43,13 @@ static bool may_swap_in(const wh_flow_state_t *state, int32_t robot, int32_t waf
 
 /* The best of the next step's full places, or WH_FLOW_NONE. */
 static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
-    const int32_t next = state->wafers[wafer].step + 1;
+    const int32_t next = wh_flow_next_step(state, wafer);
+    int32_t best = WH_FLOW_NONE;
+    if (next == WH_FLOW_NONE) {
+        return best;
+    }
     const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
     const int32_t end = wh_flow_end_of(state->plan, wafer, next);
-    int32_t best = WH_FLOW_NONE;
     for (size_t i = 0; i < step->station_count; ++i) {
         const wh_flow_station_t *station = &state->tool->stations[step->stations[i]];
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
@@ -142,10 +149,14 @@ static bool is_full(const wh_flow_place_t *place) {
 static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->heading != WH_FLOW_NONE && state->places[at->heading].coming == wafer) {
-        if (!is_full(&state->places[at->heading])) {
+        const int32_t station = state->tool->place_stations[at->heading];
+        if (!is_full(&state->places[at->heading]) && !wh_flow_has_failed(state, station)) {
             return at->heading;
         }
         wh_flow_come(state, at->heading, WH_FLOW_NONE);
+    }
+    if (state->failed > 0 && !wh_flow_recount(state, wafer)) {
+        return WH_FLOW_NONE;
     }
     const wh_flow_target_t target =
         wh_flow_target(state, robot, wafer, state->robots[robot].station, 0, WH_FLOW_NONE);
@@ -214,11 +225,12 @@ static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow
 /* The first step of its route that the robot empties. */
 static bool is_first(const wh_flow_round_t *round, const wh_flow_task_t *task) {
     for (size_t i = 0; i < round->count; ++i) {
-        if (round->tasks[i].route == task->route && round->tasks[i].step < task->step) {
+        if (round->tasks[i].is_direct && round->tasks[i].route == task->route &&
+            round->tasks[i].step < task->step) {
             return false;
         }
     }
-    return true;
+    return task->is_direct;
 }
 
 static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) {
@@ -278,6 +290,6 @@ static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int
 
 bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                       wh_flow_order_t *order) {
-    const int32_t has = carried(&state->robots[robot]);
+    const int32_t has = carried(state, &state->robots[robot]);
     return has != WH_FLOW_NONE ? carry_on(state, robot, has, order) : take(state, rules, robot, order);
 }

@@ -41,6 +41,22 @@ static bool empties(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int3
     return false;
 }
 
+/* True if a station fails for ever. */
+static bool has_endless(const wh_flow_plan_t *plan) {
+    bool found = false;
+    for (size_t i = 0; i < plan->down_count; ++i) {
+        found = found || plan->downs[i].for_us == WH_FLOW_FOR_EVER;
+    }
+    return found;
+}
+
+/* True if a step may be left out, so that the robot empties this one into a later one. */
+static bool may_empty(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot, int32_t route,
+                      int32_t k) {
+    return has_endless(plan) && (k == 0 ? serves_home(tool, plan, robot, route)
+                                        : wh_flow_step_is_served(tool, &plan->routes[route].steps[k], robot));
+}
+
 static void open_round(wh_flow_round_t *round, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                        int32_t robot) {
     size_t longest = 0;
@@ -49,10 +65,14 @@ static void open_round(wh_flow_round_t *round, const wh_flow_tool_t *tool, const
     }
     for (int32_t k = (int32_t)longest - 1; k >= 0; --k) {
         for (int32_t i = 0; i < (int32_t)plan->route_count; ++i) {
-            if ((size_t)k < plan->routes[i].step_count && empties(tool, plan, robot, i, k)) {
+            if ((size_t)k >= plan->routes[i].step_count) {
+                continue;
+            }
+            const bool is_direct = empties(tool, plan, robot, i, k);
+            if (is_direct || may_empty(tool, plan, robot, i, k)) {
                 round->tasks =
                     wh_array_grow(round->tasks, round->count, &round->capacity, sizeof *round->tasks);
-                round->tasks[round->count++] = (wh_flow_task_t){i, k};
+                round->tasks[round->count++] = (wh_flow_task_t){i, k, is_direct};
             }
         }
     }
@@ -106,7 +126,7 @@ void wh_flow_rules_open(wh_flow_rules_t *rules, wh_flow_state_t *state) {
     const wh_flow_tool_t *tool = state->tool;
     const wh_flow_plan_t *plan = state->plan;
     const bool is_shipped = plan->rule != WH_FLOW_LISTS && plan->rule != WH_FLOW_OWN;
-    state->checks_safety = plan->is_safe && is_shipped && find_circle(tool, plan);
+    state->checks_safety = plan->is_safe && is_shipped && (has_endless(plan) || find_circle(tool, plan));
     rules->rounds = wh_array_new(tool->robot_count, sizeof *rules->rounds);
     for (size_t i = 0; i < tool->robot_count; ++i) {
         open_round(&rules->rounds[i], tool, plan, (int32_t)i);

@@ -7,6 +7,7 @@
 /* A step that a robot empties. */
 typedef struct {
     int32_t route, step;
+    bool is_direct; /* into the next step; else only into later ones, if those between fail */
 } wh_flow_task_t;
 
 /* A robot's round: from the last step to the first; of one number, in the order of the routes. */

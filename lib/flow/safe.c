@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "failed.h"
 
 /* More than one place of a station. */
 #define SEVERAL (-2)
@@ -194,6 +195,14 @@ static int32_t find_room(const world_t *world, const inside_t *at, const wh_flow
     return room;
 }
 
+static int32_t count_free(const world_t *world, const inside_t *at, const wh_flow_station_t *station) {
+    int32_t count = 0;
+    for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+        count += is_free(world, at, p);
+    }
+    return count;
+}
+
 /* Goes on to a step: notes the stations with room, and returns the first place with room, or
  * WH_FLOW_NONE. */
 static int32_t walk_on(const world_t *world, const inside_t *at, int32_t number) {
@@ -205,6 +214,11 @@ static int32_t walk_on(const world_t *world, const inside_t *at, int32_t number)
     size_t count = 0;
     for (size_t i = 0; i < step->station_count; ++i) {
         const int32_t to = step->stations[i];
+        if (wh_flow_has_failed(state, to)) {
+            found.free_places +=
+                count_free(world, at, &state->tool->stations[to]); /* among those kept empty */
+            continue;
+        }
         const int32_t room = find_room(world, at, &state->tool->stations[to], end, &found);
         if (room != WH_FLOW_NONE) {
             safety->next[count++] = (stand_t){to, room};
@@ -217,6 +231,25 @@ static int32_t walk_on(const world_t *world, const inside_t *at, int32_t number)
     return found.free_places > step->kept_empty ? found.first : WH_FLOW_NONE;
 }
 
+/* True if the step has failed, or lies behind one that has and the wafer may stand in its place already. */
+static bool is_left_out(const world_t *world, const inside_t *at, int32_t number, bool *is_out) {
+    const wh_flow_state_t *state = world->state;
+    const wh_flow_step_t *step = wh_flow_step_of(state->plan, at->wafer, number);
+    const int32_t end = wh_flow_end_of(state->plan, at->wafer, number);
+    if (wh_flow_step_has_failed(state, step)) {
+        *is_out = true;
+        return true;
+    }
+    for (size_t i = 0; *is_out && i < world->safety->reached_count; ++i) {
+        const stand_t *reached = &world->safety->reached[i];
+        if (wh_flow_step_has(step, reached->station) &&
+            (end == WH_FLOW_NONE || reached->place == SEVERAL || reached->place == end)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Takes the wafer to its end if it can go there while all others stand. */
 static bool walk_out(const world_t *world, const inside_t *at) {
     const wh_flow_state_t *state = world->state;
@@ -224,7 +257,12 @@ static bool walk_out(const world_t *world, const inside_t *at) {
     int32_t end = at->place;
     world->safety->reached[0] = (stand_t){state->tool->place_stations[at->place], at->place};
     world->safety->reached_count = 1;
+    bool is_out = false;
     for (int32_t k = at->step + 1; k <= last; ++k) {
+        if (state->failed > 0 && is_left_out(world, at, k, &is_out)) {
+            continue;
+        }
+        is_out = false;
         end = walk_on(world, at, k);
         if (end == WH_FLOW_NONE) {
             return false;
@@ -281,12 +319,12 @@ static void look(const world_t *world) {
     for (size_t i = 0; i < state->coming_count; ++i) {
         const int32_t place = state->coming[i], w = state->places[place].coming;
         if (comes(world, place)) {
-            put(world, &(inside_t){w, state->wafers[w].step + 1, place, true}, true);
+            put(world, &(inside_t){w, wh_flow_next_step(state, w), place, true}, true);
         }
     }
     for (size_t i = 0; i < world->into_count; ++i) {
         const wh_flow_into_t *into = &world->into[i];
-        put(world, &(inside_t){into->wafer, state->wafers[into->wafer].step + 1, into->place, true}, false);
+        put(world, &(inside_t){into->wafer, wh_flow_next_step(state, into->wafer), into->place, true}, false);
     }
 }
 

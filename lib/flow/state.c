@@ -70,6 +70,7 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
                                                    .robot = WH_FLOW_NONE,
                                                    .taker = WH_FLOW_NONE,
                                                    .heading = WH_FLOW_NONE,
+                                                   .toward = WH_FLOW_NONE,
                                                    .next = WH_FLOW_NONE,
                                                    .before = WH_FLOW_NONE,
                                                    .done_us = WH_FLOW_NEVER};
@@ -97,6 +98,14 @@ void wh_flow_state_close(wh_flow_state_t *state) {
 size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step) {
     const wh_flow_plan_t *plan = state->plan;
     return plan->routes[plan->lots[plan->wafers[wafer].lot].route].first_step + (size_t)step;
+}
+
+void wh_flow_note_over(wh_flow_state_t *state) {
+    ++state->over;
+    while (state->first_open < (int32_t)state->plan->wafer_count &&
+           state->wafers[state->first_open].is_over) {
+        ++state->first_open;
+    }
 }
 
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer) {
@@ -178,7 +187,25 @@ int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b) {
     return one->entered_us < other->entered_us ? -1 : one->entered_us > other->entered_us ? 1 : 0;
 }
 
+/* Counted one by one: a wafer may leave out steps. */
+static int32_t count_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
+    int32_t sum = 0;
+    for (size_t w = 0; w < state->plan->wafer_count; ++w) {
+        const wh_flow_wafer_state_t *at = &state->wafers[w];
+        const bool has_come = at->place != WH_FLOW_NONE || at->robot != WH_FLOW_NONE;
+        const int32_t counts_in = at->toward != WH_FLOW_NONE ? at->toward : at->step;
+        if (state->plan->lots[state->plan->wafers[w].lot].route == route && has_come && !at->is_over &&
+            counts_in < step) {
+            ++sum;
+        }
+    }
+    return sum;
+}
+
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
+    if (state->failed > 0) {
+        return count_to_come(state, route, step);
+    }
     const size_t first = state->plan->routes[route].first_step;
     int32_t sum = step > 0 ? -state->leaving[first + (size_t)step - 1] : 0;
     for (int32_t k = 0; k < step; ++k) {

@@ -51,9 +51,9 @@ typedef struct {
     int64_t clean_us;          /* how long its place is cleaned around it before that, after its process */
     int32_t next, before;      /* in its step, by the time of entering */
     int32_t heading;           /* swap: the place, perhaps a full one, for which a robot has taken it */
-    bool is_counted; /* it counts in the next step already, though its transfer there has not begun */
-    bool is_moving;  /* its transfer has begun */
-    bool is_over;
+    int32_t toward;            /* the step in which it counts already, or WH_FLOW_NONE */
+    bool is_moving;            /* its transfer has begun */
+    bool is_over, is_lost;     /* lost: in a station that failed, or on an arm with nowhere to go */
 } wh_flow_wafer_state_t;
 
 typedef enum {
@@ -107,6 +107,7 @@ typedef enum {
     WH_FLOW_EVENT_STAY, /* of what is done in a place, up to the pick */
     WH_FLOW_EVENT_SHUT, /* a real door */
     WH_FLOW_EVENT_LEFT, /* a stay in a real station: until the wafer was lifted */
+    WH_FLOW_EVENT_ENDS, /* a route ends where its wafer lies, because of stations that have failed */
 } wh_flow_event_kind_t;
 
 /* One thing that took time, told when it has ended, so by the order of the ends. */
@@ -159,8 +160,10 @@ typedef struct wh_flow_state {
     struct wh_flow_safety *safety; /* see safe.h */
     uint64_t changes;              /* of where wafers are, and where they go */
     size_t next_lot, next_down;
-    size_t over;           /* wafers at their end */
-    int32_t first_open;    /* all wafers before this one are */
+    size_t over;           /* wafers at their end, lost ones with them */
+    size_t lost;           /* wafers in stations that failed */
+    size_t failed;         /* stations that never work again */
+    int32_t first_open;    /* all wafers before this one are over */
     int64_t next_start_us; /* by takt */
     int64_t last_us;       /* the end of the last placing */
     wh_flow_listener_t listener;
@@ -176,6 +179,9 @@ void wh_flow_state_close(wh_flow_state_t *state);
 
 /* The index of a wafer's step in counts, heads and tails. */
 size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step);
+
+/* One more wafer is over, which its state says already. */
+void wh_flow_note_over(wh_flow_state_t *state);
 
 /* Puts the wafer behind all others of its step, or takes it out. */
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);

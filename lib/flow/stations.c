@@ -1,5 +1,6 @@
 #include "stations.h"
 
+#include "failed.h"
 #include "locks.h"
 #include "outside.h"
 #include "transfer.h"
@@ -24,15 +25,12 @@ static void end_wafer(wh_flow_state_t *state, int32_t wafer) {
     at->done_us = WH_FLOW_NEVER;
     wh_flow_step_leave(state, wafer);
     --state->counts[wh_flow_step_index(state, wafer, at->step)];
-    ++state->over;
-    while (state->first_open < (int32_t)state->plan->wafer_count &&
-           state->wafers[state->first_open].is_over) {
-        ++state->first_open;
-    }
+    wh_flow_note_over(state);
 }
 
 static bool is_last(const wh_flow_state_t *state, int32_t wafer) {
-    return state->wafers[wafer].step == wh_flow_last_step(state->plan, wafer);
+    return wh_flow_following(state, wafer, state->wafers[wafer].step, state->wafers[wafer].place) ==
+           WH_FLOW_NONE;
 }
 
 /* Notes the next clean in a station's places. */
@@ -286,6 +284,20 @@ static void put_off(wh_flow_state_t *state, int32_t number) {
     }
 }
 
+/* Robots that would begin to carry a wafer there at this very instant do not. */
+static void hold_back(wh_flow_state_t *state, int32_t number) {
+    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+        wh_flow_robot_state_t *robot = &state->robots[r];
+        if (!state->tool->robots[r].is_real && robot->action == WH_FLOW_CARRYING &&
+            robot->since_us == state->now_us && robot->to != WH_FLOW_NONE && robot->station == number &&
+            robot->until_us > state->now_us) {
+            robot->station = robot->from;
+            robot->action = WH_FLOW_WAITING;
+            robot->until_us = WH_FLOW_NEVER;
+        }
+    }
+}
+
 static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     wh_flow_station_state_t *station = &state->stations[down->station];
     const int64_t until_us = down->for_us == WH_FLOW_FOR_EVER
@@ -294,6 +306,11 @@ static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    if (down->for_us == WH_FLOW_FOR_EVER) {
+        ++state->failed;
+        ++state->changes;
+        hold_back(state, down->station);
+    }
     if (state->tool->stations[down->station].is_real) {
         wh_flow_set_down(state, down->station, true);
     } else {
@@ -310,12 +327,14 @@ static bool is_any_clean_due(const wh_flow_state_t *state, int32_t number) {
 
 void wh_flow_stations_begin(wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
+    while (state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us) {
+        begin_down(state, &plan->downs[state->next_down++]);
+    }
+    wh_flow_end_routes(state); /* a lot may be over by that, and make room for another one */
     while (state->next_lot < plan->lot_count && plan->lots[state->next_lot].arrives_us <= state->now_us &&
            make_room(state, &plan->lots[state->next_lot])) {
         arrive(state, &plan->lots[state->next_lot++]);
-    }
-    while (state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us) {
-        begin_down(state, &plan->downs[state->next_down++]);
+        wh_flow_end_routes(state);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         if (is_any_clean_due(state, i)) {

@@ -89,7 +89,8 @@ static void add_wafer(snapshot_t *into, const wh_flow_state_t *state, int32_t w)
     }
     const wh_flow_wafer_state_t *wafer = &state->wafers[w];
     add(into, (int64_t)state->plan->wafers[w].lot * 1000 + wafer->step);
-    add(into, (wafer->is_counted ? 1 : 0) + (wafer->is_moving ? 2 : 0) + (wafer->is_over ? 4 : 0));
+    add(into,
+        (wafer->toward != WH_FLOW_NONE ? 1 : 0) + (wafer->is_moving ? 2 : 0) + (wafer->is_over ? 4 : 0));
     add(into, wafer->taker);
 }
 

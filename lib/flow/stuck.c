@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "failed.h"
 #include "flow.h"
 #include "safe.h"
 #include "transfer.h"
@@ -32,7 +33,7 @@ static const char *station_name(const wh_flow_state_t *state, int32_t station) {
 /* A wafer that stands in the way of this one in a station, or WH_FLOW_NONE: there is room. */
 static int32_t find_other(const wh_flow_state_t *state, int32_t wafer, const wh_flow_station_t *station) {
     int32_t other = WH_FLOW_NONE;
-    const int32_t end = wh_flow_end_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    const int32_t end = wh_flow_end_of(state->plan, wafer, wh_flow_next_step(state, wafer));
     for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
         const wh_flow_place_t *place = &state->places[p];
         const int32_t here = place->wafer != WH_FLOW_NONE ? place->wafer : place->coming;
@@ -79,7 +80,7 @@ static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text
  * out. WH_FLOW_NONE: it may go to one, none is free, or nobody looks. */
 static int32_t find_shut_in(const wh_flow_state_t *state, int32_t wafer, const wh_flow_station_t *station) {
     int32_t shut_in = WH_FLOW_NONE;
-    const int32_t end = wh_flow_end_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    const int32_t end = wh_flow_end_of(state->plan, wafer, wh_flow_next_step(state, wafer));
     for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
         const wh_flow_into_t into = {wafer, p};
         const bool is_free =
@@ -128,7 +129,8 @@ static void say_next(const wh_flow_state_t *state, int32_t wafer, int32_t number
 /* "W2 in X waits for B, where W1 is" */
 static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, at->step + 1);
+    const int32_t step = wh_flow_next_step(state, wafer);
+    const wh_flow_step_t *next = step == WH_FLOW_NONE ? NULL : wh_flow_step_of(state->plan, wafer, step);
     say(text, "%s%s ", text->length > 0 ? "; " : "", state->plan->wafers[wafer].name);
     if (at->robot != WH_FLOW_NONE) {
         say(text, "on %s", state->tool->robots[at->robot].name);
@@ -136,7 +138,7 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
         say(text, "in %s", station_name(state, state->tool->place_stations[at->place]));
         say_down(state, state->tool->place_stations[at->place], text);
     }
-    for (size_t i = 0; i < next->station_count; ++i) {
+    for (size_t i = 0; next && i < next->station_count; ++i) {
         say(text, "%s", i == 0 ? " waits for " : " or ");
         say_next(state, wafer, next->stations[i], text);
     }
@@ -152,7 +154,7 @@ static bool is_kept_out(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     bool kept_out = at->place != WH_FLOW_NONE && at->step == 0 && !at->is_over;
     if (kept_out) {
-        const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, 1);
+        const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, wh_flow_next_step(state, wafer));
         for (size_t i = 0; i < next->station_count; ++i) {
             const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
             kept_out = kept_out && (find_other(state, wafer, station) != WH_FLOW_NONE ||

@@ -1,5 +1,6 @@
 #include "transfer.h"
 
+#include "failed.h"
 #include "safe.h"
 
 /* So long after now that all that has begun has ended: for a beginning that nobody knows. */
@@ -137,18 +138,18 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
     add_target(state, found, &target);
 }
 
-/* True if this wafer of any route counts in that step of that route; `ahead`: it is on its way to there. */
-static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route, int32_t step,
-                      int32_t ahead) {
-    return state->plan->lots[state->plan->wafers[wafer].lot].route == route &&
-           !state->wafers[wafer].is_over && state->wafers[wafer].step + ahead == step;
+/* True if this wafer of any route counts in that step of that route; `comes`: it is on its way to there. */
+static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route, int32_t step, bool comes) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    return state->plan->lots[state->plan->wafers[wafer].lot].route == route && !at->is_over &&
+           (comes ? wh_flow_next_step(state, wafer) : at->step) == step;
 }
 
 /* The place's wafers of that step: the one that lies there, if it does, and the one that comes. */
 static int32_t count_own(const wh_flow_state_t *state, const wh_flow_place_t *place, bool lies, int32_t route,
                          int32_t step) {
-    return (lies && counts_in(state, place->wafer, route, step, 0)) +
-           (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, step, 1));
+    return (lies && counts_in(state, place->wafer, route, step, false)) +
+           (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, step, true));
 }
 
 wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us,
@@ -190,13 +191,22 @@ static void look_at_all(const wh_flow_state_t *state, int32_t robot, int32_t sta
     }
 }
 
+static bool has_room(const wh_flow_state_t *state, int32_t wafer, int32_t step, int64_t at_us,
+                     int32_t leaver) {
+    const int32_t route = state->plan->lots[state->plan->wafers[wafer].lot].route;
+    const wh_flow_room_t room = wh_flow_room(state, route, step, at_us, leaver);
+    return room.holds < room.may;
+}
+
 /* Fills `found`. `leaver`: see wh_flow_room. */
 static void find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
                          int64_t loaded_us, int32_t station, int32_t leaver, found_t *found) {
     const wh_flow_tool_t *tool = state->tool;
-    const int32_t next = state->wafers[wafer].step + 1;
+    const int32_t next = wh_flow_next_step(state, wafer);
+    if (next == WH_FLOW_NONE) {
+        return;
+    }
     const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
-    const int32_t route = state->plan->lots[state->plan->wafers[wafer].lot].route;
     const int32_t end = wh_flow_end_of(state->plan, wafer, next);
     for (size_t i = 0; i < step->station_count; ++i) {
         const int32_t to = step->stations[i];
@@ -205,11 +215,8 @@ static void find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wa
         }
         const int64_t there_us = state->now_us + loaded_us + wh_flow_move_us(tool, robot, from, to) +
                                  tool->doors[wh_flow_of(tool, robot, to)].open_us;
-        if (step->kept_empty > 0) {
-            const wh_flow_room_t room = wh_flow_room(state, route, next, there_us, leaver);
-            if (room.holds >= room.may) {
-                continue;
-            }
+        if (step->kept_empty > 0 && !has_room(state, wafer, next, there_us, leaver)) {
+            continue;
         }
         look_at_all(state, robot, to, end, there_us, found);
     }
@@ -269,7 +276,9 @@ bool wh_flow_is_carrier(const wh_flow_state_t *state, int32_t robot, int32_t waf
         !state->tool->serves[wh_flow_of(state->tool, robot, station)]) {
         return false;
     }
-    return wh_flow_step_is_served(state->tool, wh_flow_step_of(state->plan, wafer, at->step + 1), robot);
+    const int32_t next = wh_flow_next_step(state, wafer);
+    return next != WH_FLOW_NONE &&
+           wh_flow_step_is_served(state->tool, wh_flow_step_of(state->plan, wafer, next), robot);
 }
 
 bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {

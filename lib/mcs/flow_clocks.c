@@ -1,6 +1,7 @@
 /* Stations' clocks, as the engine of a flow hears and asks them. */
 #include <stdio.h>
 
+#include "../flow/failed.h"
 #include "../text/array.h"
 #include "flow_played.h"
 
@@ -157,7 +158,7 @@ void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t 
     const wh_flow_state_t *state = &played->engine->state;
     const struct wh_clocks *clocks = played->mcs->clocks;
     const int32_t station = played->tool->place_stations[place];
-    const int32_t next = state->wafers[wafer].step + 1;
+    const int32_t next = wh_flow_next_step(state, wafer);
     const int64_t own_us = wh_flow_step_of(&played->flow->plan, wafer, next)->process_us;
     const int32_t number = clocks ? clocks->by_station[station] : WH_NONE;
     if (number == WH_NONE) {

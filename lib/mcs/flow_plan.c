@@ -50,7 +50,7 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     END};
 
 const wh_reader_field_t wh_flow_down_fields[] = {
-    {"at", "number", "s", true}, {"seconds", "number", "s; math.huge: for ever", true}, END};
+    {"at", "number", "s", true}, {"seconds", "number", "s; for ever", false}, END};
 
 const wh_reader_field_t wh_flow_list_fields[] = {
     {"order", "table<string, string[][]>", "each robot's transfers in order", true}, END};
@@ -291,10 +291,11 @@ static int by_begin(const void *a, const void *b) {
     return one->at_us < other->at_us ? -1 : one->at_us > other->at_us ? 1 : one->station - other->station;
 }
 
-/* math.huge is for ever. */
+/* Nothing and math.huge are for ever. */
 static int64_t read_length(wh_reader_t *reader) {
     const int type = wh_reader_push(reader, "seconds");
-    const bool is_endless = type == LUA_TNUMBER && lua_tonumber(reader->L, -1) == (lua_Number)INFINITY;
+    const bool is_endless =
+        type == LUA_TNIL || (type == LUA_TNUMBER && lua_tonumber(reader->L, -1) == (lua_Number)INFINITY);
     lua_pop(reader->L, 1);
     return is_endless ? WH_FLOW_FOR_EVER
                       : wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, WH_FLOW_LONGEST_S));

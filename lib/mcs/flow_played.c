@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../flow/failed.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "flow_own.h"
@@ -211,8 +212,8 @@ static void set_way(lua_State *L, const wh_flow_played_t *played, int32_t robot)
 }
 
 static void set_step(lua_State *L, const wh_flow_played_t *played, int32_t wafer) {
-    const wh_flow_step_t *step =
-        wh_flow_step_of(&played->flow->plan, wafer, played->engine->state.wafers[wafer].step + 1);
+    const int32_t next = wh_flow_next_step(&played->engine->state, wafer);
+    const wh_flow_step_t *step = wh_flow_step_of(&played->flow->plan, wafer, next == WH_FLOW_NONE ? 0 : next);
     wh_lua_set_boolean(L, "centre", step->centres);
     wh_lua_set_boolean(L, "map", step->maps);
 }

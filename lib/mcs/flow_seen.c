@@ -3,6 +3,7 @@
 #include <lauxlib.h>
 #include <string.h>
 
+#include "../flow/failed.h"
 #include "../flow/safe.h"
 
 #define TYPE "waferhand.tool"
@@ -132,8 +133,9 @@ static void push_next(lua_State *L, const wh_flow_seen_t *seen, int32_t wafer) {
     if (seen->state->wafers[wafer].is_over) {
         return;
     }
-    const wh_flow_step_t *next = wh_flow_step_of(seen->plan, wafer, seen->state->wafers[wafer].step + 1);
-    for (size_t i = 0; i < next->station_count; ++i) {
+    const int32_t step = wh_flow_next_step(seen->state, wafer);
+    const wh_flow_step_t *next = step == WH_FLOW_NONE ? NULL : wh_flow_step_of(seen->plan, wafer, step);
+    for (size_t i = 0; next && i < next->station_count; ++i) {
         push_station_name(L, seen, next->stations[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }

@@ -120,6 +120,7 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     set_seconds(L, "makespan_s", result->makespan_us);
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
     wh_lua_set_integer(L, "left", (int64_t)result->left);
+    wh_lua_set_integer(L, "lost", (int64_t)result->lost);
     if (result->period > 0) {
         lua_pushnumber(L, seconds(result->cycle_us) / result->period);
         lua_setfield(L, -2, "cycle_s");

@@ -47,7 +47,7 @@ static int32_t last_process(const wh_flow_figures_t *figures, int32_t wafer) {
 
 static void add_visit(lines_t *lines, const wh_flow_visit_t *visit, const char **processing) {
     const wh_flow_figures_t *figures = lines->figures;
-    const bool is_last = visit->step == wh_flow_last_step(figures->plan, visit->wafer);
+    const bool is_last = visit->is_end;
     line_t line = {.wafer = visit->wafer, .place = WH_FLOW_NONE, .robot = visit->robot, .arm = visit->arm};
     line.us = visit->picked_us;
     line.location = "AtWork";

@@ -111,6 +111,7 @@ static json_t *lot_wafer(const wh_flow_figures_t *figures, size_t w) {
     json_t *object = wh_json_set(json_object(), "name %s station %s slot %d", of->name,
                                  figures->tool->stations[figures->tool->place_stations[home]].name,
                                  (int)wh_flow_slot(figures->tool, home));
+    wh_json_put(object, "fate", wh_json_text(wh_flow_fate_names[figures->fates[w]]));
     wh_json_put(object, "came_s", seconds(figures->came_us ? figures->came_us[w] : WH_FLOW_NEVER));
     return object;
 }
@@ -245,8 +246,9 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
     if (result->is_steady) {
         wh_json_put(object, "ended_steady", json_true());
     }
-    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g", result->no_cycle,
-                      result->may_block, (double)figures->end_us / 1e6, (double)flow->began_us / 1e6);
+    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g lost %lld", result->no_cycle,
+                      result->may_block, (double)figures->end_us / 1e6, (double)flow->began_us / 1e6,
+                      (long long)result->lost);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
     (void)wh_json_add(object, "textbook busiest longest_stay_s path gains waits windows gaps",
                       textbook(figures), busiest(figures), seconds(figures->stays.longest_us),

@@ -252,6 +252,23 @@ static void print_late(const wh_printer_t *printer, const wh_flow_figures_t *fig
     }
 }
 
+/* Wafers of one fate, by their names, the first ones of many. */
+static void print_fate(const wh_printer_t *printer, const wh_flow_figures_t *figures, wh_flow_fate_t fate,
+                       const char *text) {
+    size_t count = 0;
+    for (size_t w = 0; w < figures->plan->wafer_count; ++w) {
+        if (figures->fates[w] == fate && count++ < LISTED) {
+            wh_print_say(printer, "%s%s", count == 1 ? text : ", ", figures->plan->wafers[w].name);
+        }
+    }
+    if (count > LISTED) {
+        fprintf(printer->out, " and %zu more", count - LISTED);
+    }
+    if (count > 0) {
+        fputc('\n', printer->out);
+    }
+}
+
 /* Where nobody has said where robots begin, and where safe cannot be held. */
 static void print_notes(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     const wh_flow_tool_t *tool = figures->tool;
@@ -266,6 +283,9 @@ static void print_notes(const wh_printer_t *printer, const wh_flow_figures_t *fi
     if (said > 0) {
         fputc('\n', printer->out);
     }
+    print_fate(printer, figures, WH_FLOW_FATE_LOST, "! lost where a station failed: ");
+    print_fate(printer, figures, WH_FLOW_FATE_SHORTENED,
+               "! at their ends without steps whose stations failed: ");
     if (figures->result.may_block) {
         fprintf(printer->out,
                 "! safe is not held for every flow of several robots by rule swap: what one of them "

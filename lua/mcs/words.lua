@@ -289,6 +289,7 @@ words.classes = {
     { "end", "\"done\"|\"stuck\"|\"broken\"|\"cut\"", "how it ended" }, { "why", "string?", "unless it is done" },
     { "makespan_s", "number", "s: the end of the last placing" }, { "wafers", "integer", "at their ends, without dummies" },
     { "left", "integer", "not at their ends, with dummies; above 0 if the flow was cut" },
+    { "lost", "integer", "in stations that failed, or with nowhere to go" },
     { "cycle_s", "number?", "s a wafer, if there is a steady cycle" }, { "period", "integer?", "wafers after which it repeats" },
     { "per_hour", "number?", "wafers, by that cycle" }, { "longest_stay_s", "number", "s after a process" },
     { "stays", "table[]", "those beyond a window: wafer, station, done_s, stay_s, window_s" },

@@ -2,7 +2,7 @@
 
     flow_compare.py PROGRAM FOLDER LEVEL FIRST COUNT     prints the seeds that differ; exit 1 if there are any
 
-Chambers that fail for ever are left out: the program refuses a down time without an end."""
+Lost wafers are the same as well; so are stays beyond windows."""
 import json
 import pathlib
 import subprocess
@@ -64,13 +64,18 @@ def route_text(name, route):
     return f"{name} = {{ {', '.join(parts)} }},"
 
 
+def down_text(down):
+    lasts = "" if down["seconds"] is None else f", seconds = {Seconds(down['seconds'])!r}"
+    return f'{{ "{down["station"]}", at = {Seconds(down["at"])!r}{lasts} }}'
+
+
 def script_text(flow, names):
     lines = ['cell "tool.lua"', "flow { lots = {", *(lot_text(number, lot, names) for number, lot in enumerate(flow["lots"])), "}, routes = {",
              *(route_text(name, route) for name, route in flow["routes"].items()), "},"]
     rule = flow["rule"]
     if isinstance(rule, dict):
         rule = {"order": {robot: [[names.get(part, part) for part in action] for action in actions] for robot, actions in rule["order"].items()}}
-    downs = ['{ "%s", at = %r, seconds = %r }' % (down["station"], Seconds(down["at"]), Seconds(down["seconds"])) for down in flow.get("down") or []]
+    downs = [down_text(down) for down in flow.get("down") or []]
     lines += [f"until_s = {Seconds(flow['until'])!r}," if flow.get("until") else "", f"rule = {lua(rule)},", f"down = {{ {', '.join(downs)} }},", f"takt = {Seconds(flow.get('takt') or 0)!r},",
               f"safe = {lua(flow.get('safe', True))},", 'late = "tell" }', ""]
     return "\n".join(lines)
@@ -95,10 +100,9 @@ def visits_of_model(result, names):
 
 
 def compare(program, folder, level, seed):
-    """None if both are the same or the case is left out, else what differs first."""
+    """None if both are the same, else what differs first."""
     tool, flow = flow_tools.make(seed, level)
-    if any(down["seconds"] is None for down in flow.get("down") or []):
-        return None
+    endless = any(down["seconds"] is None for down in flow.get("down") or [])
     names, result = {}, flow_model.run(tool, flow)
     (folder / "flow.lua").write_text(script_text(flow, names), encoding="utf-8")
     (folder / "tool.lua").write_text(layout_text(tool), encoding="utf-8")
@@ -110,7 +114,10 @@ def compare(program, folder, level, seed):
     ends = {"done": "done", "STUCK": "stuck", "refused": "broken", "until": "cut"}
     if ends[result["state"]] != told["end"]:
         return f"the model ends {result['state']}, the program {told['end']}: {told['why']}"
-    if told["end"] == "stuck" and isinstance(flow["rule"], str) and flow.get("safe", True):
+    lost = {wafer["name"] for lot in told["lots"] for wafer in lot["wafers"] if wafer["fate"] == "lost"}
+    if lost != {names[name] for name in result["lost"]} or len(lost) != told["lost"]:
+        return f"lost: the model's are {sorted(names[name] for name in result['lost'])}, the program's {sorted(lost)}"
+    if told["end"] == "stuck" and not endless and isinstance(flow["rule"], str) and flow.get("safe", True):
         return f"safe, and STUCK: {told['why']}"
     summed = sum(whole(part["seconds"]) for part in told["path"])
     if summed != whole(told["makespan_s"]):

@@ -51,7 +51,8 @@ class Model:
         for down in flow.get("down") or []:
             end = None if down["seconds"] is None else down["at"] + down["seconds"]
             self.stations[down["station"]].down.append((down["at"], end))
-            self.instants |= {down["at"]} | ({end} if end is not None else set())
+            fails = min((other["at"] for other in flow["down"] if other["station"] == down["station"] and other["seconds"] is None), default=None)
+            self.instants |= {down["at"]} | ({end} if end is not None and (fails is None or end < fails) else set())
         self.read_lots()
 
     def read_lots(self):
@@ -325,10 +326,15 @@ class Model:
             if robot.doing and robot.doing[0] <= self.now:
                 finish, robot.doing = robot.doing[1], None
                 finish()
+        self.end_routes()
         while self.ahead and self.ahead[0].get("arrives", 0) <= self.now and self.may_come(self.ahead[0]):
             self.come(self.ahead.pop(0))
+            self.end_routes()
+
+    def end_routes(self):
+        """Wafers in stations that have failed, and those with no step left."""
         for wafer in self.wafers:
-            if wafer.place and not wafer.ended and wafer.place.station.failed_at(self.now):
+            if wafer.lies() and not wafer.ended and wafer.place.station.failed_at(self.now):
                 wafer.ended = wafer.lost = True
             wafer.ended = wafer.ended or wafer.lies() and self.following(wafer, wafer.step) is None
 

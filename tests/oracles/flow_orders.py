@@ -1,6 +1,6 @@
 """What robots are told: by shipped rules, by lists and by rules of one's own (rules 13 and 14)."""
 from flow_parts import Refused
-from flow_rules import backward, begin_or_go, carry_on, first_entered, in_order, swap
+from flow_rules import backward, begin_or_go, carry_on, first_entered, in_order, leave_failed, swap
 
 
 def pumped_by_hand(rule):
@@ -12,6 +12,10 @@ def pumped_by_hand(rule):
 def ask(model, robot):
     """Asks the rules once. True if the robot begins anything."""
     robot.told = None
+    stranded = [wafer for wafer in robot.held() if wafer.stranded and not wafer.ended]
+    if stranded:
+        robot.told = "waiting for place"
+        return leave_failed(model, robot, stranded[0])
     if any(wafer.toward is not None and wafer.destination for wafer in robot.held()):
         return carry_on(model, robot)
     if callable(model.rule):
@@ -78,7 +82,7 @@ def check(model, robot, action):
         if not any(action[1] in names_after(model, wafer) for wafer in kept):
             refuse(robot, action, "no wafer that goes there is kept")
         return
-    if not any(fits(wafer, action, robot) for wafer in wafers):
+    if not any(fits(wafer, action, robot) or fits_now(model, robot, wafer, action) for wafer in wafers):
         refuse(robot, action, "no wafer will be on that step")
     if robot.free_arm() is None:
         refuse(robot, action, "no arm is free")

@@ -103,6 +103,7 @@ class Wafer:
         self.entered = self.done = None     # done is known as soon as its placing has begun
         self.begun = None       # when its transfer began
         self.ended = self.lost = False
+        self.stranded = False   # aboard before a station that has failed, and no place behind is free
         self.rows = []
 
     def lies(self):

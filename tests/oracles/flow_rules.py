@@ -12,7 +12,8 @@ def carry_on(model, robot):
     wafer = min(aboard, key=lambda each: (each.destination.station.name != robot.at, each.begun, each.order))
     place = wafer.destination
     if place.station.failed_at(model.now):
-        return leave_failed(model, robot, wafer)
+        place.coming = wafer.destination = None
+        return swap(model, robot) if model.rule == "swap" and len(robot.arms) > 1 else leave_failed(model, robot, wafer)
     if model.rule == "swap" and len(robot.arms) > 1 and not place_is_mine(place):
         return swap(model, robot)
     if model.go(robot, place.station):
@@ -25,17 +26,20 @@ def carry_on(model, robot):
 
 
 def leave_failed(model, robot, wafer):
-    """Its destination has failed: another place of the step, or the step behind; if there is none its route ends on the arm."""
-    wafer.destination.coming = wafer.destination = None
-    wafer.toward = model.following(wafer, wafer.step)
-    if wafer.toward is None:
+    """Its destination has failed: another place of the step, or the step behind. It waits aboard while that is full; if there is none
+    its route ends on the arm."""
+    wafer.toward, wafer.stranded = None, False
+    number = model.following(wafer, wafer.step)
+    if number is None:
         wafer.ended = wafer.lost = True
         return False
-    places = model.destinations(robot, wafer, wafer.toward, None, model.now)
-    wafer.destination = (places or wafer.steps[wafer.toward][0])[0]
-    if places:
-        places[0].coming = wafer
-    return bool(places)
+    places = model.destinations(robot, wafer, number, None, model.now)
+    if not places:
+        wafer.stranded = True
+        return False
+    wafer.toward, wafer.destination, places[0].coming = number, places[0], wafer
+    model.go(robot, places[0].station)
+    return True
 
 
 def begin_or_go(model, robot, wafer, places):
@@ -226,6 +230,9 @@ def swap_loaded(model, robot, wafer):
     if wafer.destination and wafer.destination.coming is wafer:
         wafer.destination.coming = None
     wafer.destination, wafer.toward = None, model.following(wafer, wafer.step)
+    if wafer.toward is None:
+        wafer.ended = wafer.lost = True
+        return False
     places = model.destinations(robot, wafer, wafer.toward, None, model.now)
     place = places[0] if places else best_full(model, robot, wafer, wafer.toward)
     if place is None:

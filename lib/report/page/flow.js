@@ -38,9 +38,10 @@
     const ENDS = { done: 'all at their ends', stuck: 'STUCK: nobody can go on', broken: 'ended early', cut: 'the flow was cut' };
 
     function wafers({ flow: told }) {
-        const kind = told.end === 'done' ? 'good' : told.end === 'cut' ? 'warn' : 'bad';
+        const lost = told.lost > 0 ? `${told.lost} lost where a station failed` : '';
+        const kind = lost ? 'bad' : told.end === 'done' ? 'good' : told.end === 'cut' ? 'warn' : 'bad';
         return tile(told.wafers === 1 ? 'wafer at its end' : 'wafers at their ends',
-            told.left > 0 ? `${told.wafers}, ${told.left} not` : told.wafers, ENDS[told.end] || '', kind);
+            told.left > 0 ? `${told.wafers}, ${told.left} not` : told.wafers, lost || ENDS[told.end] || '', kind);
     }
 
     const makespan = ({ flow: told }) => tile('to the last placing', W.seconds(told.makespan_s));

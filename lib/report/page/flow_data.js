@@ -43,8 +43,9 @@
         const others = wafer.visits.filter((visit) => visit.to !== null && isTime(visit.placed_s)).map((visit) => ({
             station: visit.to, slot: visit.to_slot, step: visit.step, comes: visit.place_s, lies: visit.placed_s,
             process: visit.process_s, done: visit.done_s }));
-        return (isTime(wafer.came_s) ? [first] : []).concat(others).map((stay) => {
-            const next = wafer.visits.find((visit) => visit.step === stay.step + 1);
+        const lain = (isTime(wafer.came_s) ? [first] : []).concat(others);
+        return lain.map((stay) => {
+            const next = wafer.visits.find((visit) => visit.step > stay.step);
             return Object.assign(stay, { wafer: wafer.name, taken: next ? next.pick_s : null,
                 leaves: next ? next.picked_s : null });
         });
@@ -242,6 +243,9 @@
     const LISTS = ['robots', 'stations', 'stays', 'lots', 'visits', 'doings', 'ways', 'path', 'gains', 'waits', 'windows',
         'gaps'];
 
+    /* Its route ends there: the document tells, or nothing is done there. */
+    const isOver = (wafer, stay) => (wafer.fate ? wafer.fate !== 'inside' : !isTime(stay.process));
+
     /* Fills in each wafer's stays, and returns those of each station. */
     function staysByStation(all) {
         const stays = new Map();
@@ -249,7 +253,7 @@
             wafer.stays = staysOf(wafer);
             const last = wafer.stays[wafer.stays.length - 1];
             wafer.stays.forEach((stay) => {
-                stay.isLast = stay === last && !isTime(stay.process) && !isTime(stay.taken);
+                stay.isLast = stay === last && !isTime(stay.taken) && isOver(wafer, stay);
                 stays.set(stay.station, stays.get(stay.station) || []);
                 stays.get(stay.station).push(stay);
             });

@@ -13,20 +13,22 @@
             [visit.place_s, visit.placed_s, `${arm}: is placed into ${visit.to} ${visit.to_slot}`]];
     }
 
-    function stayed(stay, end) {
+    const LASTS = { lost: 'is lost' };
+
+    function stayed(stay, end, fate) {
         const place = `${stay.station} ${stay.slot}`, isDone = isTime(stay.done);
-        const what = stay.step === 0 ? 'lies there' : stay.isLast ? 'is at its end' : 'waits';
+        const what = stay.isLast ? LASTS[fate] || 'is at its end' : stay.step === 0 ? 'lies there' : 'waits';
         const until = isTime(stay.taken) ? stay.taken : stay.isLast ? null : end;
         const made = [[stay.lies, stay.process, `${place}: the door shuts`],
             [stay.process, stay.done, `${place}: process`, 'good']];
-        const isFree = isDone || !isTime(stay.process);
-        return (isTime(stay.process) ? made : []).concat(isFree ? [[isDone ? stay.done : stay.lies, until, `${place}: ${what}`,
-            what === 'waits' ? 'warn' : null]] : []);
+        const rest = [stay.lies, stay.process, stay.done].filter(isTime).pop();
+        const after = [rest, until, `${place}: ${what}`, what === 'waits' ? 'warn' : null];
+        return isTime(stay.process) ? made.concat(isDone ? [after] : []) : [after];
     }
 
     /* All that happened to it, by the begins: { from, to, what, kind }; to is null if nobody knows. */
     function rowsOf(of, end) {
-        return of.visits.map(transfer).concat(of.stays.map((stay) => stayed(stay, end))).flat()
+        return of.visits.map(transfer).concat(of.stays.map((stay) => stayed(stay, end, of.fate))).flat()
             .filter(([from, to]) => isTime(from) && (!isTime(to) || to > from))
             .map(([from, to, what, kind]) => ({ from, to: isTime(to) ? to : null, what, kind }))
             .sort((a, b) => a.from - b.from || (a.to || end) - (b.to || end));
@@ -54,8 +56,10 @@
         const first = of.visits[0], last = of.visits[of.visits.length - 1];
         const about = [of.lot ? `lot ${of.lot}` : null, of.route ? `route ${of.route}` : null];
         const whole = first && isTime(last.placed_s) ? W.seconds(last.placed_s - first.pick_s) : null;
+        const fates = { lost: 'lost where a station failed', shortened: 'without steps whose stations failed' };
         const took = whole ? `${whole} from the first pick to the last placing` : first ? 'not at its end' : 'never taken';
-        return about.concat(took).filter(Boolean).join('; ');
+        const fate = fates[of.fate];
+        return about.concat(took, fate).filter(Boolean).join('; ');
     }
 
     function paint() {
