@@ -31,7 +31,8 @@ static void put_share(const wh_printer_t *printer, int64_t slices, const char *w
     }
 }
 
-/* A steady cycle first: what the run is with its start and its end comes behind it. A flow has told its own. */
+/* A steady cycle first: what the run is with its start and its end comes behind it. A flow has told its own
+ * one before. */
 bool wh_print_figure(const wh_printer_t *printer) {
     const wh_throughput_t throughput = wh_throughput(printer->record);
     const wh_steady_cycle_t steady = wh_steady_cycle(printer->record);
