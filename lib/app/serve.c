@@ -542,7 +542,9 @@ int wh_app_serve(int argc, char **argv) {
     arguments.run.run.parameters = arguments.layout.parameters.items;
     arguments.run.run.parameter_count = arguments.layout.parameters.count;
     wh_catch_signals();
-    const int status = is_apart(&arguments) ? serve(&arguments, argc, argv) : WH_EXIT_USAGE;
+    const int status = is_apart(&arguments) && wh_serve_beside_forget(&arguments.beside)
+                           ? serve(&arguments, argc, argv)
+                           : WH_EXIT_USAGE;
     wh_layout_arguments_free(&arguments.layout);
     wh_option_list_free(&arguments.dialects);
     wh_option_list_free(&arguments.mechanisms);

@@ -1,7 +1,9 @@
 #include "serve_beside.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "../text/json.h"
@@ -88,6 +90,16 @@ static bool write_ready(void *user, FILE *out) {
     }
     wh_json_put(ready, "ports", ports);
     return wh_json_print(ready, out) == 0;
+}
+
+bool wh_serve_beside_forget(const wh_serve_beside_t *beside) {
+    struct stat found;
+    const bool is_old = beside->ready && stat(beside->ready, &found) == 0 && S_ISREG(found.st_mode);
+    if (is_old && unlink(beside->ready) != 0) {
+        fprintf(stderr, "--ready %s: the old file cannot be removed: %s\n", beside->ready, strerror(errno));
+        return false;
+    }
+    return true;
 }
 
 bool wh_serve_beside_ready(const wh_serve_beside_t *beside, const wh_host_t *host) {

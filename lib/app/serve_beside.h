@@ -23,6 +23,9 @@ bool wh_serve_beside_open(const wh_serve_beside_t *beside, wh_host_t *host);
 /* Says where a controller's port is, and who reaches it. */
 void wh_serve_beside_tell(const wh_host_t *host, const wh_controller_t *controller, const char *what);
 
+/* Removes such a file of an earlier run, before anything else can fail. False, with a message: it cannot. */
+bool wh_serve_beside_forget(const wh_serve_beside_t *beside);
+
 /* Writes the file that says that all ports listen. False, with a message: it cannot be written. */
 bool wh_serve_beside_ready(const wh_serve_beside_t *beside, const wh_host_t *host);
 

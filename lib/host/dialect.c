@@ -431,8 +431,12 @@ static int read_dialect(lua_State *L) {
 
 /* Runs protected: the modules and `host`. */
 static int open_libraries(lua_State *L) {
+    const wh_dialect_t *dialect = lua_touserdata(L, 1);
     luaopen_wh(L);
     lua_setglobal(L, "wh");
+    if (strcmp(dialect->path, WH_DIALECT_CONTROL) == 0) {
+        wh_dialect_open_tester(L);
+    }
     return wh_dialect_open_host(L);
 }
 

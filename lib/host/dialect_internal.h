@@ -8,6 +8,10 @@
 /* Reads the field `framing` of the dialect's table. */
 void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
 
+/* Sets the global table `known` of the dialect of a tester: `kinds` of events and names of `errors`, both in
+ * their order, and meant(word, names), which returns "; did you mean NAME?", or "". */
+void wh_dialect_open_tester(lua_State *L);
+
 /* Pushes a field of the dialect's table and of the table in it; `within` may be null. */
 void wh_dialect_push(lua_State *L, const char *field, const char *within);
 

@@ -101,6 +101,7 @@ typedef struct {
     char *ended_text;   /* and its answer; null: none */
     wh_status_t failed; /* the last error of an action that was begun; WH_OK: none has failed */
     char failed_line[WH_DIALECT_LINE_BYTES];
+    uint64_t failed_order; /* when, among all ports */
 } wh_action_t;
 
 /* A request that waits behind the action that runs. */
@@ -197,6 +198,7 @@ struct wh_host {
     bool is_told_to_stop;     /* of what runs */
     bool is_ended;            /* the operator ended it: nothing is begun any more */
     uint64_t orders, turns;   /* accepted actions, and the times that ports were served, so far */
+    uint64_t failures;        /* of actions that were begun, so far */
     wh_host_clock_t clock;
     uint32_t sensors, valves;       /* of the last slice, by gripper: on, open */
     wh_event_kind_t last_complaint; /* of the cell, where session->complaints says that there was one */

@@ -86,13 +86,36 @@ static void put_phase(const wh_controller_t *asked, FILE *out) {
     }
 }
 
+const char *wh_controller_known_as(const wh_controller_t *controller) {
+    const wh_port_mechanism_t *mechanism = &controller->mechanism;
+    const char *kind = controller->leader->is_tester ? "control" : wh_mechanism_names[mechanism->kind];
+    return mechanism->name ? mechanism->name : kind;
+}
+
+/* The port whose last error is told: its own; to a tester the latest of all. */
+static const wh_controller_t *find_failed(const wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    const wh_controller_t *found = controller->leader;
+    for (size_t i = 0; i < host->count && controller->leader->is_tester; ++i) {
+        const wh_controller_t *other = host->controllers[i]->leader;
+        const bool is_later =
+            found->action.failed == WH_OK || other->action.failed_order > found->action.failed_order;
+        found = other->action.failed != WH_OK && is_later ? other : found;
+    }
+    return found;
+}
+
 static void put_failed(const wh_controller_t *controller, FILE *out) {
-    const wh_action_t *action = &controller->leader->action;
+    const wh_controller_t *failed = find_failed(controller);
+    const wh_action_t *action = &failed->leader->action;
     char spelt[2 * WH_DIALECT_LINE_BYTES];
     (void)fprintf(out, " error=%d", (int)action->failed);
     if (action->failed != WH_OK) {
         (void)fprintf(out, " error_name=%s error_command=%s", wh_status_name(action->failed),
                       spell_line(action->failed_line, spelt));
+    }
+    if (action->failed != WH_OK && controller->leader->is_tester) {
+        (void)fprintf(out, " error_port=%s", spell_line(wh_controller_known_as(failed), spelt));
     }
 }
 

@@ -26,7 +26,10 @@ bool wh_controller_waits(const wh_controller_t *controller);
 bool wh_host_is_stopped(const wh_host_t *host);
 
 /* Like wh_mcs_describe, but with several controllers the running command and the last failure are this
- * controller's own. */
+ * controller's own; a tester is told the latest failure of any, with `error_port`. */
 void wh_controller_describe(const wh_controller_t *controller, char text[WH_MCS_DESCRIPTION_BYTES]);
+
+/* A port's name in events and in a tester's STATUS: its mechanism's name, or kind. */
+const char *wh_controller_known_as(const wh_controller_t *controller);
 
 #endif

@@ -247,14 +247,12 @@ void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t grip
 
 void wh_controller_tell_others(const wh_controller_t *controller, wh_host_event_kind_t kind, int value) {
     const wh_host_t *host = controller->host;
-    const wh_port_mechanism_t *mechanism = &controller->mechanism;
     const wh_host_event_t told = {.kind = wh_host_event_names[kind],
                                   .wafer = "",
                                   .gripper = "",
                                   .seconds = (double)wh_session_time_us(host->session) / 1e6,
                                   .value = value,
-                                  .at = mechanism->name ? mechanism->name
-                                                        : wh_mechanism_names[mechanism->kind]};
+                                  .at = wh_controller_known_as(controller)};
     for (size_t i = 0; i < host->count && !controller->leader->is_tester; ++i) {
         const bool concerns =
             host->controllers[i]->leader == controller->leader || host->controllers[i]->leader->is_tester;

@@ -171,6 +171,11 @@ local function decode(frame, client)
   return { command = what or fail("no line, rate, subscribe or tell"), value = given[what], id = given.id, client = client.number }
 end
 
+local kinds = {}
+for _, kind in ipairs(known.kinds) do
+  kinds[kind] = true
+end
+
 local commands = {
   rate = { does = "RATE", run = function(request) return ("RATE %.17g"):format(request.value) end },
   tell = { does = "TELL", run = function(request) return "TELL " .. request.value:gsub("[%c]", " ") end },
@@ -179,6 +184,8 @@ local commands = {
     for _, kind in ipairs(request.value) do
       if type(kind) ~= "string" then
         fail("subscribe: no list of kinds of events")
+      elseif not kinds[kind] then
+        host.refuse("BAD_ARGUMENT", ("subscribe: %s (expected some of %s%s)"):format(kind, table.concat(known.kinds, ", "), known.meant(kind, known.kinds)))
       end
       wanted[kind] = true
     end
@@ -193,9 +200,13 @@ for word in WORDS_OF_THE_PROMPT:gmatch("%S+") do
   commands[word] = { does = word, run = function(request) return request.line end }
 end
 
--- ALARM WAFER_MISSING: an error by its name.
+-- ALARM WAFER_MISSING: an error by its name, in any case.
 commands.ALARM.run = function(request)
-  local entry = wh.errors[request.line:match("^%S+%s+([%u_]+)$") or ""]
+  local name = request.line:match("^%S+%s+(%a[%w_]*)$")
+  local entry = wh.errors[(name or ""):upper()]
+  if name and not entry then
+    host.refuse("BAD_ARGUMENT", ("ALARM: %s (expected the number or the name of an error%s)"):format(name, known.meant(name, known.errors)))
+  end
   return entry and ("ALARM %d"):format(entry.number) or request.line
 end
 

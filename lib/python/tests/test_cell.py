@@ -1,11 +1,13 @@
 """The package against the program: what a test bench does with a cell."""
 
 import dataclasses
+import socket
+import threading
 import time
 
 import pytest
 
-from waferhand import Cell, CellError, Event, NotStarted, Port, Where
+from waferhand import Cell, CellError, Event, Line, NotStarted, Port, Untried, Where
 
 PAPER = "lua/layouts/paper.lua"
 
@@ -97,3 +99,100 @@ def test_where_a_name_needs_quotes(cell):
     with pytest.raises(CellError) as refused:
         cell.where('a "b\\')
     assert 'no such wafer; "a "b\\" (expected' in refused.value.text
+
+
+@pytest.mark.cell(PAPER)
+def test_kinds_of_events_that_are_none(cell):
+    with pytest.raises(CellError, match=r"subscribe: pickd \(expected some of picked, .*, error; did you mean picked\?"):
+        cell.events("picked", "pickd")
+    with pytest.raises(CellError, match="subscribe: wafer "):
+        cell.events("wafer")
+    with cell.events():
+        pass
+
+
+@pytest.mark.cell(PAPER)
+def test_names_of_alarms(cell):
+    with pytest.raises(CellError, match=r"ALARM: wafer_mising .*did you mean WAFER_MISSING\?"):
+        cell.alarm("wafer_mising")
+    cell.clear(cell.alarm("wafer_missing"))
+
+
+@pytest.mark.cell("lua/layouts/two_aligners.lua", dialect=[Port("prompt", "robot"), Port("prompt", "P"), Port("prompt", "Q")])
+def test_the_status_has_the_last_error_of_any_port(cell):
+    assert cell.status()["error"] == 0
+    with cell.connect("robot") as robot, cell.connect("P") as aligner:
+        for host, line, port in ((robot, "GET P 1", "robot"), (aligner, "ALIGN P", "P"), (robot, "GET P 1", "robot")):
+            answer = host.say(line)
+            told = cell.status()
+            assert answer.startswith(f"ERROR {told['error']} ") and told["error"] > 0, (answer, told)
+            assert (told["error_port"], told["error_command"]) == (port, line)
+        assert "error_port" not in robot.say("STATUS")
+
+
+@pytest.mark.cell(PAPER)
+def test_the_status_has_the_error_of_the_whole_cell(cell):
+    with cell.connect() as host:
+        cell.alarm("WAFER_MISSING")
+        assert host.say("GET A 1").startswith("ERROR")
+    told = cell.status()
+    assert (told["error_name"], told["error_port"]) == ("WAFER_MISSING", "cell")
+
+
+def test_a_rate_below_0():
+    with pytest.raises(NotStarted, match="--rate: -1 "):
+        Cell(PAPER, rate=-1).__enter__()
+
+
+def test_a_fault_that_never_came():
+    with pytest.warns(UserWarning, match="never came, and so were not tried: .*WAFER_MISSING"):
+        with Cell(PAPER) as cell:
+            cell.alarm("WAFER_MISSING")
+    with pytest.raises(Untried, match="never came"):
+        with Cell(PAPER, strict=True) as cell:
+            cell.fault("no_vacuum gripper=EE")
+    with pytest.raises(ZeroDivisionError), Cell(PAPER, strict=True) as cell:
+        cell.alarm("WAFER_MISSING")
+        raise ZeroDivisionError
+
+
+def test_a_frame_is_heard_whole_in_time():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        line = Line(server.getsockname(), "\n", 20)
+        other, _ = server.accept()
+
+        def dribble():
+            for _ in range(20):
+                other.sendall(b"x")
+                time.sleep(0.05)
+            other.sendall(b"\nsecond\n")
+
+        thread = threading.Thread(target=dribble)
+        thread.start()
+        begin = time.monotonic()
+        with pytest.raises(TimeoutError):
+            line.hear(0.2)
+        assert time.monotonic() - begin < 0.8
+        assert line.hear() == 20 * "x" and line.hear(0) == "second"
+        thread.join()
+        line.close()
+        other.close()
+
+
+@pytest.mark.cell(PAPER)
+def test_events_end_while_a_thread_reads(cell):
+    heard = []
+    with cell.events("picked") as events:
+        thread = threading.Thread(target=lambda: heard.extend(events), daemon=True)
+        thread.start()
+        time.sleep(0.1)
+    thread.join(10)
+    assert not thread.is_alive() and heard == []
+
+
+def test_ports_in_the_words_of_python():
+    with pytest.raises(NotStarted, match=r"in Python: Port\(dialect, ports=2\)"):
+        Cell("lua/layouts/rail_arm.lua", "numbered").__enter__()
+    with Cell("lua/layouts/rail_arm.lua", Port("numbered", ports=2)) as cell:
+        with pytest.raises(KeyError, match="no port motion .expected one of robot.status, robot.motion"):
+            cell.connect("motion")

@@ -10,9 +10,9 @@ The package starts `waferhand serve` and talks to its control port. It knows not
 library alone.
 """
 
-from .cell import Cell, Line, Port
+from .cell import Cell, Line, Port, Untried
 from .control import CellError, Event, Events, Where
 from .program import NotStarted
 from .transcript import Entry
 
-__all__ = ["Cell", "CellError", "Entry", "Event", "Events", "Line", "NotStarted", "Port", "Where"]
+__all__ = ["Cell", "CellError", "Entry", "Event", "Events", "Line", "NotStarted", "Port", "Untried", "Where"]

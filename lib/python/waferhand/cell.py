@@ -7,12 +7,18 @@ import re
 import shutil
 import socket
 import tempfile
+import time
+import warnings
 from dataclasses import dataclass
 from typing import Optional, Sequence, Union
 
 from .control import Control, Events, Value, Where, typed, values_of
-from .program import Started, find_dialect, find_program, start
+from .program import NotStarted, Started, find_dialect, in_python, find_program, start
 from .transcript import Entry, read_transcript
+
+
+class Untried(AssertionError):
+    """Faults or alarms never came, so the test has not tried them; the text is the program's own sentence."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +36,7 @@ class Line:
     def __init__(self, address: tuple[str, int], end: str, seconds: float) -> None:
         self._socket = socket.create_connection(address, timeout=seconds)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._end, self._rest = end.encode("latin-1"), b""
+        self._end, self._rest, self._seconds = end.encode("latin-1"), b"", seconds
 
     def __enter__(self) -> "Line":
         return self
@@ -45,14 +51,22 @@ class Line:
         self._socket.sendall(text.encode("latin-1") + self._end)
 
     def hear(self, seconds: Optional[float] = None) -> str:
-        """The next frame. Raises TimeoutError, or ConnectionError if the controller has hung up."""
-        if seconds is not None:
-            self._socket.settimeout(seconds)
-        while self._end not in self._rest:
-            some = self._socket.recv(4096)
-            if not some:
-                raise ConnectionError("the controller has hung up")
-            self._rest += some
+        """The next frame, whole within `seconds`. Raises TimeoutError, or ConnectionError if the controller has hung up."""
+        given = self._seconds if seconds is None else seconds
+        limit = time.monotonic() + given
+        try:
+            while self._end not in self._rest:
+                self._socket.settimeout(max(limit - time.monotonic(), 0.001))
+                some = self._socket.recv(4096)
+                if not some:
+                    raise ConnectionError("the controller has hung up")
+                self._rest += some
+                if self._end not in self._rest and time.monotonic() > limit:
+                    raise socket.timeout
+        except socket.timeout:
+            raise TimeoutError(f"no whole frame within {given} s") from None
+        finally:
+            self._socket.settimeout(self._seconds)
         frame, self._rest = self._rest.split(self._end, 1)
         return frame.decode("latin-1")
 
@@ -66,6 +80,7 @@ class Cell:
 
     `dialect` is a file, the name of a shipped dialect, a Port, or a list of these. `rate` says how fast simulated time
     passes; 0, the default, is as fast as possible. `parameters` are the layout's, by name. `options` go to the program.
+    `strict`: faults and alarms that never came raise Untried at the end; else they are a warning.
     `keep` is a file, NAME.jsonl, in which the transcript stays for `waferhand converse`.
     """
 
@@ -81,12 +96,13 @@ class Cell:
         cwd: Optional[str] = None,
         keep: Optional[str] = None,
         timeout: float = 60,
+        strict: bool = False,
     ) -> None:
         listed = [dialect] if isinstance(dialect, (str, Port)) else list(dialect)
         self._dialects = [item if isinstance(item, Port) else Port(item) for item in listed]
         self._layout, self._rate, self._options = layout, rate, list(options)
         self._parameters = dict(parameters or {})
-        self._program, self._cwd, self._timeout = program, cwd, timeout
+        self._program, self._cwd, self._timeout, self._strict = program, cwd, timeout, strict
         if keep is not None and not keep.endswith(".jsonl"):
             raise ValueError(f"keep: {keep} (expected a file NAME.jsonl)")
         self._keep = keep
@@ -106,7 +122,7 @@ class Cell:
         program = find_program(self._program)
         command = [program, "serve", self._layout, "--control", "127.0.0.1:0", "--ready", str(folder / "ready.json")]
         command += ["--transcript", self._keep or str(folder / "talk.jsonl")]
-        command += ["--rate", str(self._rate)] if self._rate > 0 else ["--lockstep"]
+        command += ["--rate", str(self._rate)] if self._rate != 0 else ["--lockstep"]
         for name, value in self._parameters.items():
             command += ["--set", f"{name}={value}"]
         for port in self._dialects:
@@ -119,7 +135,10 @@ class Cell:
         self._folder = pathlib.Path(tempfile.mkdtemp(prefix="waferhand."))
         try:
             command = self._command(self._folder)
-            self._started = start(command, self._folder / "ready.json", self._folder / "said", self._cwd, self._timeout)
+            try:
+                self._started = start(command, self._folder / "ready.json", self._folder / "said", self._cwd, self._timeout)
+            except NotStarted as problem:
+                raise NotStarted(in_python(str(problem))) from None
             told = self._started.told
             self.ports = {port["name"]: (port["address"], port["number"]) for port in told["ports"]}
             self._control_at = (told["control"]["address"], told["control"]["number"])
@@ -131,6 +150,11 @@ class Cell:
 
     def __exit__(self, *problem: object) -> None:
         self.close()
+        untried = self.untried
+        if untried and problem[0] is None and self._strict:
+            raise Untried(untried)
+        if untried and problem[0] is None:
+            warnings.warn(untried, stacklevel=2)
 
     def close(self) -> None:
         """Ends the program. What was said can be read afterwards, too."""
@@ -156,7 +180,9 @@ class Cell:
 
     def connect(self, port: Optional[str] = None, end: str = "\n") -> Line:
         """A host's connection to the port of that name, or to the first one."""
-        return Line(self.ports[port] if port else self.port, end, self._timeout)
+        if port is not None and port not in self.ports:
+            raise KeyError(f"no port {port} (expected one of {', '.join(self.ports)})")
+        return Line(self.ports[port] if port is not None else self.port, end, self._timeout)
 
     # ----------------------------------------------------------------------------------------------------- tester
 
@@ -228,6 +254,12 @@ class Cell:
     def said(self) -> str:
         """All that the program has printed so far."""
         return self._started.said() if self._started else self._said
+
+    @property
+    def untried(self) -> Optional[str]:
+        """The program's sentence about faults and alarms that never came, once the cell is closed."""
+        found = re.search(r"^serve: (never came, .*)$", self.said, re.M)
+        return found[1] if found else None
 
     @property
     def hash(self) -> Optional[str]:

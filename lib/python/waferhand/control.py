@@ -81,8 +81,15 @@ class Control:
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._file = self._socket.makefile("rb")
         self._last = 0
+        self.is_closed = False
 
     def close(self) -> None:
+        """Also while another thread reads: it sees the end."""
+        self.is_closed = True
+        try:
+            self._socket.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass  # the program has gone
         self._file.close()
         self._socket.close()
 
@@ -110,11 +117,15 @@ class Control:
 
 
 class Events:
-    """Events of the kinds that were asked for, one after another. A context; leaving it ends the subscription."""
+    """Events of the kinds that were asked for, one after another. A context; leaving it ends the iteration, in any thread."""
 
     def __init__(self, address: tuple[str, int], kinds: tuple[str, ...], seconds: float) -> None:
         self._control = Control(address, seconds)
-        self._control.request(subscribe=list(kinds))
+        try:
+            self._control.request(subscribe=list(kinds))
+        except BaseException:
+            self._control.close()
+            raise
 
     def __enter__(self) -> "Events":
         return self
@@ -126,6 +137,11 @@ class Events:
         return self
 
     def __next__(self) -> Event:
-        told = self._control.read()
+        try:
+            told = self._control.read()
+        except (OSError, ValueError):
+            if self._control.is_closed:
+                raise StopIteration from None
+            raise
         kind = str(told.pop("event"))
         return Event(kind, **told)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import time
@@ -38,6 +39,12 @@ def find_dialect(name: str, program: str) -> str:
         if (place / f"{name}.lua").exists():
             return str(place / f"{name}.lua")
     raise NotStarted(f"no dialect {name} (expected a path, or the name of a file in {' or '.join(map(str, places))})")
+
+
+def in_python(message: str) -> str:
+    """The program's message with what a test writes where the program asks for options of its own."""
+    found = re.search(r"\d+ --tcp and --pty \(expected one for each of the (\d+) ports", message)
+    return f"{message}\nin Python: Port(dialect, ports={found[1]})" if found else message
 
 
 def start(command: Sequence[str], ready: pathlib.Path, log: pathlib.Path, cwd: Optional[str], seconds: float) -> "Started":
