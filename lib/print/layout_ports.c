@@ -60,8 +60,8 @@ static json_t *handshake(const wh_load_port_of_t *of) {
     json_t *object = json_object();
     for (int i = 1; i <= WH_LOAD_PORT_TIMERS; ++i) {
         char limit[4], step[4];
-        (void)snprintf(limit, sizeof limit, "tp%d", i);
-        (void)snprintf(step, sizeof step, "t%d", i);
+        (void)snprintf(limit, sizeof limit, "tp%c", '0' + i);
+        (void)snprintf(step, sizeof step, "t%c", '0' + i);
         wh_json_put(object, limit, json_real(seconds(of->limit_us[i])));
         wh_json_put(object, step, json_real(seconds(of->us[i])));
     }
