@@ -12,12 +12,12 @@ typedef struct {
     wh_option_list_t said;
 } arguments_t;
 
-static const wh_option_t options[] = {
-    {"say", 0, "FRAME",
-     "Show what comes of this frame without a cell: its lines and what the host hears at once; may be "
-     "given more than once",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, said)},
-    {0}};
+static const wh_option_t options[] = {{"say", 0, "[PORT:]FRAME",
+                                       "Show what comes of this frame without a cell: its lines and what the "
+                                       "host hears at once; a dialect with "
+                                       "several ports needs PORT; may be given more than once",
+                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, said)},
+                                      {0}};
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {

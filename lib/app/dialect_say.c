@@ -72,11 +72,36 @@ static bool say_request(wh_dialect_t *dialect, const wh_request_t *request) {
            print_encoded(dialect, WH_ENCODE_ACKNOWLEDGE, &(wh_told_t){.request = request});
 }
 
+/* The port of PORT:FRAME, where a dialect has several; the frame begins behind it. Null: none is named. */
+static const char *take_port(const wh_dialect_clients_t *clients, const char **body) {
+    for (size_t i = 0; i < clients->port_count; ++i) {
+        const size_t length = strlen(clients->ports[i]);
+        if (strncmp(*body, clients->ports[i], length) == 0 && (*body)[length] == ':') {
+            *body += length + 1;
+            return clients->ports[i];
+        }
+    }
+    return clients->port_count > 1 ? NULL : clients->ports[0];
+}
+
+static bool refuse_port(const wh_dialect_clients_t *clients, const char *body) {
+    fprintf(stderr, "--say %s: no port (expected PORT:FRAME, with a port of ", body);
+    for (size_t i = 0; i < clients->port_count; ++i) {
+        fprintf(stderr, "%s%s", i > 0 ? ", " : "", clients->ports[i]);
+    }
+    fputs(")\n", stderr);
+    return false;
+}
+
 static bool say_frame(wh_dialect_t *dialect, const char *body) {
-    static const wh_client_t client = {"", 1};
+    wh_client_t client = {"", 1};
     uint8_t frame[WH_FRAMING_LINE];
     wh_request_t request;
     wh_failure_t failure;
+    client.port = take_port(&dialect->clients, &body);
+    if (!client.port) {
+        return refuse_port(&dialect->clients, body);
+    }
     const size_t size = wh_framing_encode(&dialect->framing, 0, (const uint8_t *)body, strlen(body), frame);
     if (size == 0) {
         fprintf(stderr, "--say %s: no body of a frame (expected none of the marks of a start or an end)\n",

@@ -357,8 +357,9 @@ static size_t take_start(lua_State *L, const call_t *it) {
         }
     }
     if (start) {
-        luaL_error(L, "%s: an encoder's second value: %s (expected one of framing.replies)",
-                   it->dialect->path, start);
+        char known[WH_DIALECT_STARTS_BYTES];
+        luaL_error(L, "%s: an encoder's second value: %s (expected one of framing.replies: %s)",
+                   it->dialect->path, start, wh_dialect_list_starts(framing, known));
     }
     return 0;
 }

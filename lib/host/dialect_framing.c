@@ -5,6 +5,7 @@
 #include <lauxlib.h>
 
 #include "dialect_internal.h"
+#include "transcript.h"
 
 static const wh_reader_field_t framing_fields[] = {{"start", "string", "", false},
                                                    {"replies", "table", "", false},
@@ -99,4 +100,17 @@ void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
     validate_framing(reader, framing);
     validate_framing(reader, &dialect->replies);
     wh_reader_leave(reader);
+}
+
+const char *wh_dialect_list_starts(const wh_framing_t *framing, char text[WH_DIALECT_STARTS_BYTES]) {
+    size_t length =
+        (size_t)snprintf(text, WH_DIALECT_STARTS_BYTES, "%s", framing->start_count > 0 ? "" : "none");
+    for (size_t i = 0; i < framing->start_count; ++i) {
+        const wh_framing_mark_t *mark = &framing->starts[i];
+        char shown[4 * WH_FRAMING_MARK + 1];
+        (void)wh_transcript_escape(shown, sizeof shown, mark->bytes, mark->size);
+        length += (size_t)snprintf(text + length, WH_DIALECT_STARTS_BYTES - length, "%s\"%s\"",
+                                   i > 0 ? ", " : "", shown);
+    }
+    return text;
 }

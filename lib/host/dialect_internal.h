@@ -8,6 +8,10 @@
 /* Reads the field `framing` of the dialect's table. */
 void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
 
+/* The starts of a framing, such as "!", "$" with their quotes; none: there is none. Returns the text. */
+#define WH_DIALECT_STARTS_BYTES (WH_FRAMING_MARKS * (4 * WH_FRAMING_MARK + 4) + 1)
+const char *wh_dialect_list_starts(const wh_framing_t *framing, char text[WH_DIALECT_STARTS_BYTES]);
+
 /* Sets the global table `known` of the dialect of a tester: `kinds` of events and names of `errors`, both in
  * their order, and meant(word, names), which returns "; did you mean NAME?", or "". */
 void wh_dialect_open_tester(lua_State *L);

@@ -2,8 +2,8 @@
 -- A motion is answered when it begins; the next one, and `waitForEom`, when it has ended; picks, places and homing at their end. Two
 -- ports share one state: `status` asks and stops, `motion` also moves. Motions need power (`hp 1`) and `attach 1`; both go when the
 -- client at `motion` goes. Joints are 1 z, 2 shoulder, 3 elbow, 4 wrist, 5 gripper, 6 rail; mm and degrees. A location names the
--- nest that is nearest to it. A tester may tell "estop on", "hand elbow 170" (moved by hand, or back without a value) and
--- "overshoot elbow 134.062", which homing mends.
+-- nest that is nearest to it. A robot without one of the joints 1 to 4 has no answer to `wherej`: -2800. A tester may tell "estop on",
+-- "hand elbow 170" (moved by hand, or back without a value) and "overshoot elbow 134.062", which homing mends.
 
 local AXES = { "z", "theta", "forearm", "yaw", "gripper", "rail" }
 local JOINTS = { z = 1, shoulder = 2, elbow = 3, wrist = 4, gripper = 5, rail = 6 }
@@ -37,7 +37,7 @@ end
 local function number(text, least, most)
   local value = tonumber(text)
   if not value or value - value ~= 0 then
-    fail(-712, "Invalid syntax: " .. tostring(text))
+    fail(-712, "Invalid syntax: " .. (text or "a number is missing"))
   end
   if least and value < least then
     fail(-705, "Value too small: " .. text)
@@ -87,6 +87,9 @@ local function joints(now)
   local list = {}
   for place, name in ipairs(AXES) do
     list[place] = shown[place] and shown[place][1] or name == "gripper" and width + 0.0 or now.position[name]
+    if not list[place] and name ~= "rail" then
+      fail(-2800, ("Warning Parameter Mismatch: the robot has no joint %d (expected one with %s)"):format(place, name))
+    end
   end
   return list
 end
@@ -597,11 +600,11 @@ local function tester(text)
     power = power and not estop
     return estop
   end
-  local place = JOINTS[joint or ""]
-  if (what ~= "hand" and what ~= "overshoot") or not place or (at ~= "" and not tonumber(at)) then
+  local place, value = JOINTS[joint or ""], tonumber(at)
+  if (what ~= "hand" and what ~= "overshoot") or not place or (at ~= "" and not (value and value - value == 0)) then
     host.refuse("BAD_ARGUMENT", "tell: " .. text .. " (expected estop on, estop off, hand JOINT [VALUE], or overshoot JOINT VALUE)")
   end
-  shown[place] = at ~= "" and { tonumber(at), what == "overshoot" } or nil
+  shown[place] = value and { value, what == "overshoot" } or nil
 end
 
 return {
