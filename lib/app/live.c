@@ -270,6 +270,12 @@ static wh_news_t *news_of_end(const wh_mcs_t *mcs) {
     return news;
 }
 
+static wh_news_t *news_of_hold(const wh_mcs_t *mcs, bool is_held) {
+    wh_news_t *news = wh_news_make(WH_NEWS_HELD, wh_mcs_utime(mcs), NULL, NULL);
+    news->good = is_held;
+    return news;
+}
+
 /* Null for what the page does not show. */
 static wh_news_t *news_of(const wh_mcs_t *mcs, wh_mcs_news_t what, const wh_command_record_t *command) {
     switch ((int)what) {
@@ -280,6 +286,9 @@ static wh_news_t *news_of(const wh_mcs_t *mcs, wh_mcs_news_t what, const wh_comm
         return news_of_expectation(mcs);
     case WH_MCS_STATION_TOLD:
         return news_of_station(mcs);
+    case WH_MCS_HELD:
+    case WH_MCS_NOT_HELD:
+        return news_of_hold(mcs, what == WH_MCS_HELD);
     case WH_MCS_FINISHED:
         return news_of_end(mcs);
     default:

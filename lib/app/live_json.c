@@ -93,9 +93,9 @@ static json_t *fault(const void *nothing, size_t i) {
 
 static json_t *state_of(const wh_live_kept_t *kept, const wh_live_state_t *state) {
     json_t *object =
-        wh_json_set(json_object(), "rate %g pace %g over %i dropped %i control %s paused %i",
+        wh_json_set(json_object(), "rate %g pace %g over %i dropped %i control %s paused %i held %i",
                     state->rate > 0 ? state->rate : HUGE_VAL, state->pace >= 0 ? state->pace : HUGE_VAL,
-                    kept->is_over, kept->has_dropped, state->control, state->is_paused);
+                    kept->is_over, kept->has_dropped, state->control, state->is_paused, kept->is_held);
     if (state->lists_faults) {
         wh_json_put(object, "faults", wh_json_list(fault, NULL, WH_FAULT_KINDS));
     }

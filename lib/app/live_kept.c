@@ -190,6 +190,10 @@ static void take_rest(wh_live_kept_t *kept, const wh_news_t *news) {
         note(kept, WH_LIVE_STATIONS, record->station_event_count);
         wh_record_add_station_event(record, &news->station);
         break;
+    case WH_NEWS_HELD:
+        kept->has_news = kept->has_news || kept->is_held != news->good;
+        kept->is_held = news->good;
+        break;
     case WH_NEWS_ENDED:
         kept->is_over = kept->has_news = true;
         kept->is_good = news->good;
@@ -207,6 +211,6 @@ void wh_live_kept_news(wh_live_kept_t *kept, const wh_news_t *news) {
         [WH_NEWS_COMMAND_ENDED] = take_end, [WH_NEWS_EXPECTED] = take_rest,
         [WH_NEWS_STATION] = take_rest,      [WH_NEWS_WAITS] = take_wait,
         [WH_NEWS_GOES_ON] = end_wait,       [WH_NEWS_FRAME] = take_frame,
-        [WH_NEWS_ENDED] = take_rest};
+        [WH_NEWS_ENDED] = take_rest,        [WH_NEWS_HELD] = take_rest};
     take[news->kind](kept, news);
 }

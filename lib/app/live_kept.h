@@ -34,7 +34,7 @@ typedef struct {
     wh_signals_t signals;
     wh_live_frame_t *frames;
     size_t frame_count, frame_capacity;
-    bool is_over, is_good;
+    bool is_over, is_good, is_held;
     char *failure;
     uint64_t epoch;            /* of the looks so far */
     bool is_anew;              /* what was told must be forgotten, and all of it told again */

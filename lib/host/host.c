@@ -76,6 +76,14 @@ static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
     return goes_on;
 }
 
+/* Nothing moves for now. */
+static void tell_standstill(const wh_host_t *host) {
+    if (host->next.tell) {
+        host->next.tell(host->next.user, &host->session->mcs, host->is_held ? WH_MCS_HELD : WH_MCS_NOT_HELD,
+                        NULL);
+    }
+}
+
 void wh_host_wait(wh_host_t *host) {
     const int64_t slice = wh_session_slice(host->session);
     const int64_t now = wh_host_now(host);
@@ -84,6 +92,7 @@ void wh_host_wait(wh_host_t *host) {
     host->clock.waited_us = now;
     host->clock.lua_us = 0;
     (void)serve_ports(host);
+    tell_standstill(host);
 }
 
 /* The time by the wall clock when the slice that was just played ends. */
@@ -95,14 +104,19 @@ static int64_t end_of_slice(const wh_host_t *host) {
 
 /* While it is held the run stands still, and the clock with it. False: nothing can end this HOLD. */
 static bool wait_held(wh_host_t *host) {
+    if (!host->is_held) {
+        return true;
+    }
     const int64_t begin = wh_host_now(host);
     bool goes_on = true;
+    tell_standstill(host);
     while (host->is_held && !*host->stop && goes_on) {
         goes_on = wait_and_serve(host, wh_host_now(host) + LONGEST_WAIT_US);
         host->clock.lua_us = 0;
     }
     host->clock.base_wall_us += wh_host_now(host) - begin;
     host->clock.held_us += wh_host_now(host) - begin;
+    tell_standstill(host);
     return goes_on || !host->is_held;
 }
 

@@ -194,7 +194,7 @@ static void tell_ended(wh_mcs_process_t *control, const wh_command_record_t *com
 static void tell_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news,
                       const wh_command_record_t *command) {
     wh_mcs_process_t *control = user;
-    switch (news) {
+    switch ((int)news) {
     case WH_MCS_COMMAND_BEGINS:
         tell_begin(control, command);
         break;

@@ -12,7 +12,7 @@ typedef struct wh_mcs wh_mcs_t;
 /* Room for the bytes that a partner saves. */
 #define WH_MCS_SAVED_BYTES ((size_t)1 << 17)
 
-/* The news that motion control has for its partners. */
+/* The news that motion control has for its partners. Those of a HOLD are its host's, for listeners alone. */
 typedef enum {
     WH_MCS_COMMAND_BEGINS, /* a command of the record */
     WH_MCS_COMMAND_ENDED,
@@ -21,6 +21,8 @@ typedef enum {
     WH_MCS_STATION_TOLD, /* likewise what a station does by itself */
     WH_MCS_EDGE_SCANNED, /* the scan of wh_mcs_measuring has ended */
     WH_MCS_CENTRED,      /* wh_mcs_measuring has the result of a pass through beams */
+    WH_MCS_HELD,         /* a host's HOLD: what runs stands still, and the clock with it */
+    WH_MCS_NOT_HELD,     /* no HOLD stands: it is over, or a simulator is waited for */
     WH_MCS_FINISHED /* the record is closed: the run has ended, also by an error. Not told without a cell,
                           * nor at a prompt. */
 } wh_mcs_news_t;

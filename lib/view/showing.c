@@ -18,7 +18,8 @@ struct wh_showing {
     bool is_asked;    /* atomic */
     wh_news_t *news;  /* atomic: the newest first */
     /* The stepping side's: */
-    const wh_command_t *command;
+    double axes[WH_AXES]; /* of the last slice: its command may already be the next one's */
+    size_t axis_count;
     const wh_state_t *state; /* of the last slice; null: none */
     int64_t shown;           /* the slice that was last handed over */
     uint64_t eventful;       /* the number of slices with events */
@@ -74,12 +75,9 @@ static void copy_wafers(const wh_showing_t *showing, wh_glimpse_t *look, const w
 }
 
 static void copy(const wh_showing_t *showing, wh_glimpse_t *look) {
-    const wh_command_t *command = showing->command;
     const wh_state_t *state = showing->state;
-    look->axis_count = command->axis_count < WH_AXES ? command->axis_count : WH_AXES;
-    for (size_t i = 0; i < look->axis_count; ++i) {
-        look->axes[i] = command->axes[i];
-    }
+    look->axis_count = showing->axis_count;
+    memcpy(look->axes, showing->axes, showing->axis_count * sizeof *showing->axes);
     copy_wafers(showing, look, state);
     memcpy(look->grippers, state->grippers, state->gripper_count * sizeof *state->grippers);
     look->physics = *state->physics;
@@ -143,7 +141,8 @@ void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const 
         ++showing->eventful; /* any wafer may be elsewhere */
     }
     showing->last = state->seq;
-    showing->command = command;
+    showing->axis_count = command->axis_count < WH_AXES ? command->axis_count : WH_AXES;
+    memcpy(showing->axes, command->axes, showing->axis_count * sizeof *showing->axes);
     showing->state = state;
     if (state->event_count > 0) {
         ++showing->eventful;
@@ -162,7 +161,6 @@ void wh_showing_rest(wh_showing_t *showing) {
 
 void wh_showing_forget(wh_showing_t *showing) {
     showing->state = NULL;
-    showing->command = NULL;
 }
 
 /* --------------------------------------------------------------------------------------- the showing side */

@@ -5,8 +5,8 @@
  * them. News (events, commands, frames) are a list that both sides exchange at once. So no slice comes later,
  * and no result changes, whoever looks.
  *
- * Cost in the stepping thread: a load of a flag for each slice; a copy of the state, some 10 kB and the
- * wafers, when it is asked for; likewise for each slice with events.
+ * Cost in the stepping thread: a load of a flag and a copy of the axes for each slice; a copy of the state,
+ * some 10 kB and the wafers, when it is asked for; likewise for each slice with events.
  *
  * Between wh_showing_open and wh_showing_close the functions of each side belong to one thread. Host code: it
  * ends the program if out of memory.
@@ -37,6 +37,7 @@ typedef enum {
     WH_NEWS_STATION,        /* station */
     WH_NEWS_WAITS,          /* task waits for `text` */
     WH_NEWS_GOES_ON,        /* task waits no longer */
+    WH_NEWS_HELD,           /* good: a host's HOLD stands; else it is over */
     WH_NEWS_FRAME,          /* text at port `more`; good: it came from the host */
     WH_NEWS_ENDED           /* the run is over: good, or text: why not */
 } wh_news_kind_t;
@@ -69,8 +70,7 @@ void wh_showing_close(wh_showing_t *showing);
 
 /* -------------------------------------------------------------------------------- the stepping thread's */
 
-/* A slice that was played. `command` and `state` must stay readable until the next call or
- * wh_showing_forget. */
+/* A slice that was played. `state` must stay readable until the next call or wh_showing_forget. */
 void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state);
 
 /* Nothing moves for now: the last slice is handed over, whether asked for or not. */

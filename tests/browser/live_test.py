@@ -1,6 +1,7 @@
 """The page of a cell that moves: it follows, goes back in time and returns to the present, and outlives its program."""
 import os
 import pathlib
+import socket
 import sys
 import time
 import unittest
@@ -178,6 +179,26 @@ class Live(unittest.TestCase):
         page.wait("return document.getElementById('answer').textContent.includes('OK fault=')", 20)
         self.assertIn("ALARM 42", page.text("#card-ports"))
         page.shoot("live_tester")
+        self.assertEqual(page.faults(), [])
+
+    def test_hold(self):
+        """The line above the picture and the task say so, until it goes on."""
+        page = self.page
+        served = self.show("serve", "lua/layouts/paper.lua", "--dialect", "lua/dialects/prompt.lua", "--tcp", "127.0.0.1:0", "--page", "0")
+        served.said("prompt, at ")
+        host = next(line.rsplit(" at ", 1)[1].strip() for line in served.lines if "prompt, at " in line)
+        line = socket.create_connection(("127.0.0.1", int(host.rsplit(":", 1)[1])), 20)
+        line.sendall(b"GET A 1\r\n")
+        time.sleep(0.2)
+        line.sendall(b"HOLD\r\nSTATUS\r\n")
+        page.wait("return document.getElementById('liveline').textContent.includes('held')")
+        page.wait("return document.getElementById('card-tasks').textContent.includes('held')")
+        page.wait("return document.getElementById('card-ports').textContent.includes('phase=')")
+        page.shoot("live_hold")
+        line.sendall(b"RESUME\r\n")
+        page.wait("return !document.getElementById('liveline').textContent.includes('held')")
+        page.wait("return !document.getElementById('card-tasks').textContent.includes('held')")
+        line.close()
         self.assertEqual(page.faults(), [])
 
     def test_another_site_gets_nothing(self):

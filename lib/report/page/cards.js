@@ -24,6 +24,9 @@
         return task > 0 ? `task ${task}` : 'script';
     }
 
+    /* True if a HOLD stands now; of the past the clock tells none. */
+    const isHeld = () => W.clock.following && W.live.state.held;
+
     function tasks(doc, t) {
         const running = doc.commands.filter((command) => command.begin_s <= t && !ended(command.end_s, t));
         const waiting = (doc.run.waits || []).filter((wait) => wait.from_s <= t && !ended(wait.to_s, t));
@@ -31,8 +34,8 @@
         return numbers.map((task) => {
             const command = running.find((each) => (each.task || 0) === task);
             const wait = waitOf(doc, task, t);
-            const text = [command && command.text, wait && `waits for ${wait.for}`].filter(Boolean).join(' \u2013 ');
-            return row(taskName(task), text, wait ? 'warn' : null);
+            const text = [command && command.text, isHeld() && 'held', wait && `waits for ${wait.for}`];
+            return row(taskName(task), text.filter(Boolean).join(' \u2013 '), wait || isHeld() ? 'warn' : null);
         });
     }
 

@@ -64,6 +64,9 @@
         if (state.over || state.paused) {
             return state.over ? '' : 'paused';
         }
+        if (state.held) {
+            return 'held: what runs stands still by a HOLD';
+        }
         if (typeof state.pace !== 'number') {
             return `pace: ${asked}`;
         }

@@ -169,6 +169,44 @@ class Live(unittest.TestCase):
         self.assertEqual([each["text"] for each in served.document()["document"]["run"]["commands"]], ["GET A 1"])
         self.assertEqual(served.end()[0], 0)
 
+    def test_hold(self):
+        """A HOLD: the page says so, stands where the cell stands, and has all frames up to its present; RESUME and STOP end it."""
+        served = self.serve("serve", "lua/layouts/paper.lua", "--dialect", "lua/dialects/prompt.lua", "--tcp", "127.0.0.1:0",
+                            "--rate", "20", "--page", "0")
+        served.said("prompt, at ")
+        host = next(line.rsplit(" at ", 1)[1].strip() for line in served.lines if "prompt, at " in line)
+        address, port = host.split(":")
+        stream = page.Stream(served, served.document())
+        line = socket.create_connection((address, int(port)), 20)
+        answers = line.makefile("r")
+
+        def say(text):
+            line.sendall((text + "\r\n").encode())
+            return answers.readline()
+
+        def is_held(is_so):
+            stream.wait(lambda told: [what["state"]["held"] for _, kind, what in told if kind == "growth"][-1:] == [is_so])
+
+        line.sendall(b"GET A 1\r\n")
+        for count, (wait, goes_on) in enumerate(((0.02, "RESUME"), (0.003, "RESUME"), (0.01, "STOP"))):
+            time.sleep(wait)
+            self.assertEqual(say("HOLD"), "OK\n")
+            is_held(True)
+            status = dict(word.split("=", 1) for word in say("STATUS").split() if "=" in word)
+            stream.wait(lambda told: sum("phase=" in each["text"] for _, kind, what in told if kind == "growth"
+                                         for each in what["lists"].get("frames", {"list": []})["list"]) > count)
+            now = stream.told[-1][2]["now"]
+            self.assertEqual(now["t"], float(status["time"]))
+            self.assertAlmostEqual(now["axes"][1], float(status["r"]), places=3)
+            got = served.document()
+            self.assertTrue(got["state"]["held"])
+            self.assertEqual(got["document"]["duration_s"], now["t"])
+            self.assertEqual(got["document"]["run"]["frames"][-1]["at_s"], now["t"])
+            self.assertEqual(say(goes_on), "OK\n")
+            is_held(False)
+        self.assertTrue(answers.readline().startswith("ERROR 52 STOPPED"))
+        line.close()
+
     @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
     def test_two_processes(self):
         """sim and mcs, each with its page: both show the run; a second one begins anew, also after the simulator was killed."""
