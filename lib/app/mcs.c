@@ -191,6 +191,10 @@ static int run(arguments_t *arguments, wh_mcs_link_t *link) {
     if (!wh_live_open(&arguments->run.live, &arguments->page, &wanted)) {
         return WH_EXIT_USAGE;
     }
+    if (arguments->run.live) {
+        link->control.owner.waits = wh_live_rest; /* for a simulator that is silent */
+        link->control.owner.user = arguments->run.live;
+    }
     return arguments->layout ? run_prompt(arguments, link) : run_script(arguments, link);
 }
 

@@ -208,6 +208,24 @@ class Live(unittest.TestCase):
         line.close()
 
     @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
+    def test_killed_simulator(self):
+        """The page of motion control stands at the last slice that was answered, with that slice's axes."""
+        _, wanted = self.plain("lua/examples/12_three_foups.lua")
+        simulator = self.serve("sim", "lua/layouts/three_foups.lua", "--page", "0")
+        control = self.serve("mcs", "lua/examples/12_three_foups.lua", "--page", "0")
+        stream = page.Stream(control, control.document())
+        stream.wait(lambda told: told and told[-1][2].get("now", told[-1][2]).get("t", 0) > 0.3)
+        simulator.kill()
+        control.said("no answer from the simulator: holding at slice")
+        slices = [int(found[1]) for found in (re.search("holding at slice ([0-9]+)", line) for line in control.lines) if found]
+        time.sleep(0.1)
+        now = stream.told[-1][2].get("now", stream.told[-1][2])
+        self.assertAlmostEqual(now["t"], (slices[0] - 1) / 1000, places=6)
+        self.assertEqual(control.document()["document"]["duration_s"], now["t"])
+        for axis, curve in enumerate(wanted["tracks"]["axes"]):
+            self.assertAlmostEqual(now["axes"][axis], value(curve, now["t"]), delta=0.02)
+
+    @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
     def test_two_processes(self):
         """sim and mcs, each with its page: both show the run; a second one begins anew, also after the simulator was killed."""
         simulator = self.serve("sim", "lua/layouts/paper.lua", "--page", "0")
