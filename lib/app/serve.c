@@ -388,7 +388,7 @@ static void say_counters(const wh_host_t *host) {
     if (session->complaints > 0) {
         fprintf(stderr, "serve: the cell complained %" PRId64 " time%s, such as %s\n",
                 (int64_t)session->complaints, WH_PLURAL(session->complaints),
-                wh_event_name(host->last_complaint));
+                wh_event_name(host->seen.complaint));
     }
     if (session->unmet > 0) {
         fprintf(stderr, "serve: %" PRId64 " PUT%s ended in another slot than was asked\n",
@@ -488,8 +488,8 @@ static bool open_page(served_t *served, const arguments_t *arguments) {
     const bool opened = wh_live_open(&served->live, &arguments->page, &wanted);
     if (served->live) {
         host->next = wh_live_listener(served->live, &host->next);
-        host->heard = wh_live_heard;
-        host->heard_user = served->live;
+        host->callbacks.heard = wh_live_heard;
+        host->callbacks.heard_user = served->live;
     }
     return opened;
 }

@@ -69,8 +69,8 @@ static bool open_broadcast(wh_serve_cell_t *cell, wh_mcs_partners_t *partners) {
         return false;
     }
     *partners = wh_broadcast_partners(&cell->broadcast);
-    cell->host->tick = tick_broadcast;
-    cell->host->tick_user = cell;
+    cell->host->callbacks.tick = tick_broadcast;
+    cell->host->callbacks.tick_user = cell;
     return true;
 }
 
@@ -116,8 +116,8 @@ static bool open_link(wh_serve_cell_t *cell, wh_mcs_partners_t *partners) {
         .waits = wait_for_simulator,
         .user = cell};
     *partners = wh_mcs_process_partners(&cell->link.control);
-    cell->host->tick = tick_link;
-    cell->host->tick_user = cell;
+    cell->host->callbacks.tick = tick_link;
+    cell->host->callbacks.tick_user = cell;
     return true;
 }
 

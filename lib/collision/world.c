@@ -242,7 +242,7 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     lay_out(config, &block);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         const wh_real_t gap = config->known ? config->limits[kind] : WH_CLEARANCE_RANGE;
-        world->clearances[kind].gap = world->least[kind] = gap;
+        world->clearances[kind].gap = world->gaps.least[kind] = gap;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
     wh_world_weigh(world);

@@ -78,9 +78,9 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[], const wh_rea
 static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
     double more = 0;
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        const double grown = (double)(now[kind] - world->least[kind]);
+        const double grown = (double)(now[kind] - world->gaps.least[kind]);
         more = grown > more ? grown : more;
-        world->least[kind] = now[kind];
+        world->gaps.least[kind] = now[kind];
     }
     wh_world_weigh(world);
     for (size_t i = 0; more > 0 && i < world->pair_count; ++i) {
@@ -93,7 +93,7 @@ void wh_world_copy_curves(const wh_world_t *world, wh_curves_t *curves) {
     curves->last = world->slice;
     if (world->slice > curves->first + curves->count * curves->slices) {
         for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-            curves->gaps[kind][curves->count] = world->least[kind];
+            curves->gaps[kind][curves->count] = world->gaps.least[kind];
         }
         ++curves->count;
     }
@@ -117,7 +117,7 @@ void wh_world_draw_curves(const wh_look_t *look) {
         measure_pair(look, &world->pairs[i], now);
     }
     while (look->input->slice >= curves->first + (curves->count + 1) * curves->slices) {
-        close_bin(curves, world->least, now);
+        close_bin(curves, world->gaps.least, now);
     }
     begin_bin(world, now);
 }

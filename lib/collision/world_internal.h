@@ -62,7 +62,7 @@ typedef enum WH_FOUR_BYTES {
  * was the separation along `axis` (zero: none yet). A slack of 0 or above is never a guess. */
 typedef struct {
     int32_t other;    /* an item of the tree, or a mover */
-    wh_worth_t worth; /* index in world->worth */
+    wh_worth_t worth; /* index in world->gaps.worth */
     wh_gone_t way;    /* the way by which the pair can come closer: UPRIGHT if the axis is */
     wh_real_t slack, since;
     wh_vec3_t axis;
@@ -128,6 +128,19 @@ typedef struct {
 /* Gaps are known better than to this, mm. A gap that is smaller by less than this is not a new minimum. */
 #define WH_SAME_GAP WH_REAL(1e-4)
 
+/* Reports so far: none of these comes twice. */
+typedef struct {
+    bool too_close[WH_CLEARANCES];
+    bool hit; /* contact is no longer judged */
+    bool undecided;
+} wh_world_reported_t;
+
+/* The smallest gaps of the current bin of the curves; of the run if no curves are recorded. */
+typedef struct {
+    wh_real_t least[WH_CLEARANCES];
+    wh_real_t worth[WH_WORTHS]; /* a larger gap is no new `least` */
+} wh_world_gaps_t;
+
 struct wh_world {
     const wh_world_config_t *config;
     size_t fixed_count; /* parts that hang on nothing. The tree's items are these, then the wafers */
@@ -150,13 +163,9 @@ struct wh_world {
     int32_t held[WH_WORLD_GRIPPERS];
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
-    bool too_close[WH_CLEARANCES]; /* has been reported */
-    bool struck;                   /* a hit was reported; contact is no longer judged */
-    bool undecided;                /* has been reported */
-    uint64_t slice;                /* the last slice */
-    /* The smallest gaps of the current bin of the curves; of the run if no curves are recorded. */
-    wh_real_t least[WH_CLEARANCES];
-    wh_real_t worth[WH_WORTHS]; /* a larger gap is no new `least` */
+    wh_world_reported_t reported;
+    uint64_t slice; /* the last slice */
+    wh_world_gaps_t gaps;
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
@@ -312,7 +321,7 @@ wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) WH_SYMBOL(w
 void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
                              const wh_side_t *b, const wh_gap_t *gap) WH_SYMBOL(wh_world_keep_clearance);
 
-/* Writes world->worth again, after a change in world->least. */
+/* Writes world->gaps.worth again, after a change in world->gaps.least. */
 void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);
 
 /* True if the pair need not be judged, by config->known. */

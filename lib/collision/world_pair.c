@@ -44,7 +44,7 @@ static wh_real_t moved(const wh_pair_t *near, const wh_mover_t *mover) {
 
 bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
     const wh_real_t slack = near->slack - (wh_world_gone(near, a, b) - near->since);
-    if (slack > world->worth[near->worth]) {
+    if (slack > world->gaps.worth[near->worth]) {
         return true;
     }
     if (!(slack > WH_WORLD_UNKNOWN)) {
@@ -55,7 +55,7 @@ bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t 
     near->slack = before - lost_along(world, near, a, b);
     near->exact = -1;
     wh_world_remember(near, a, b);
-    return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->worth[near->worth];
+    return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->gaps.worth[near->worth];
 }
 
 /* ----------------------------------------------------------------------------------------- between slices */
@@ -172,7 +172,7 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
 static wh_event_t *report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b,
                                   const wh_gap_t *gap, wh_gap_state_t state) {
     const bool is_hit = state == WH_GAP_HIT;
-    bool *reported = is_hit ? &look->world->struck : &look->world->undecided;
+    bool *reported = is_hit ? &look->world->reported.hit : &look->world->reported.undecided;
     wh_event_t *event =
         *reported ? NULL : append(look, is_hit ? WH_EVENT_HIT : WH_EVENT_UNDECIDED, a, b, gap);
     *reported = true;
@@ -180,7 +180,7 @@ static wh_event_t *report_contact(const wh_look_t *look, const wh_side_t *a, con
 }
 
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a, size_t crowd) {
-    if (!look->world->struck) {
+    if (!look->world->reported.hit) {
         const wh_gap_t nowhere = {.at = a->now->r};
         const wh_side_t nothing = {.part = WH_NONE, .kind = WH_PART_FIXED};
         wh_event_t *event = report_contact(look, a, &nothing, &nowhere, WH_GAP_UNDECIDED);
@@ -205,9 +205,9 @@ void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, co
     least->parts[0] = a->part;
     least->parts[1] = b->part;
     least->at = gap->at;
-    if (!wh_clearance_is_kept(found, limit) && !world->too_close[kind]) {
+    if (!wh_clearance_is_kept(found, limit) && !world->reported.too_close[kind]) {
         wh_event_t *event = append(look, WH_EVENT_TOO_CLOSE, a, b, gap);
-        world->too_close[kind] = true;
+        world->reported.too_close[kind] = true;
         if (event) {
             event->value = found;
             event->limit = limit;
@@ -223,8 +223,8 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
     if (kind == WH_CLEARANCES) {
         return;
     }
-    if (found < world->least[kind]) {
-        world->least[kind] = found;
+    if (found < world->gaps.least[kind]) {
+        world->gaps.least[kind] = found;
         wh_world_weigh(world);
     }
     wh_world_keep_clearance(look, kind, a, b, gap);
@@ -261,13 +261,13 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_t gap;
     wh_gap_t worst;
     const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
-    const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->least[kind];
+    const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->gaps.least[kind];
     wh_gap_follow(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis,
                   wh_world_start(world, a->part, b->part), &gap);
     ++world->counters.measured;
     wh_world_take_gap(near, a, b, &gap, enough > wanted ? enough : wanted);
     keep_clearance(look, kind, a, b, &gap);
-    if (world->struck) {
+    if (world->reported.hit) {
         return;
     }
     const wh_gap_state_t state = judge_between(world, a, b, &gap, &worst);
@@ -283,8 +283,8 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near) {
     wh_world_t *world = look->world;
     const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
-    const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->least[kind];
-    if ((world->struck && kind == WH_CLEARANCES) || is_parted(world, a, b, least - WH_SAME_GAP, near)) {
+    const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->gaps.least[kind];
+    if ((world->reported.hit && kind == WH_CLEARANCES) || is_parted(world, a, b, least - WH_SAME_GAP, near)) {
         ++world->counters.planes;
     } else if (wh_world_may_touch(look, a, b)) {
         wh_world_lose(near);

@@ -298,7 +298,7 @@ wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) {
 
 void wh_world_weigh(wh_world_t *world) {
     for (size_t i = 0; i < WH_WORTHS; ++i) {
-        const wh_real_t most = wh_world_most_of((wh_worth_t)i, world->least) - WH_SAME_GAP;
-        world->worth[i] = most > 0 ? most : 0;
+        const wh_real_t most = wh_world_most_of((wh_worth_t)i, world->gaps.least) - WH_SAME_GAP;
+        world->gaps.worth[i] = most > 0 ? most : 0;
     }
 }

@@ -49,7 +49,7 @@ static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) 
 /* The sum of all ways is much larger than the true approach of two movers side by side. */
 static void ask_anew(wh_world_t *world, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near) {
     const wh_real_t soon = SOON * (a->motion + b->motion);
-    if (near->slack - world->worth[near->worth] > soon || world->step < near->again) {
+    if (near->slack - world->gaps.worth[near->worth] > soon || world->step < near->again) {
         return;
     }
     const wh_side_t *one = wh_world_side_of_mover(world, a);
@@ -86,7 +86,7 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
-    const wh_real_t worth = world->worth[pair->near.worth];
+    const wh_real_t worth = world->gaps.worth[pair->near.worth];
     if (!(wh_world_slack(pair, movers) > worth)) {
         if (hold_each_other(look, pair)) {
             return (double)WH_WORLD_NOWHERE;

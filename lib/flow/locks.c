@@ -10,7 +10,7 @@ static int64_t pump_us(const wh_flow_state_t *state, int32_t number, wh_flow_sid
 
 /* Nobody is in it, its door is shut, and it neither pumps nor has failed. */
 static bool is_closed(const wh_flow_state_t *state, const wh_flow_station_state_t *station) {
-    return station->pump_us == WH_FLOW_NEVER && station->user == WH_FLOW_NONE && !station->is_shutting &&
+    return station->pump_us == WH_FLOW_NEVER && station->user == WH_FLOW_NONE && !station->real.is_shutting &&
            station->shut_us <= state->now_us && station->down_us == WH_FLOW_NEVER;
 }
 

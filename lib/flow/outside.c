@@ -11,11 +11,11 @@ void wh_flow_tell_end(wh_flow_state_t *state, int32_t robot) {
 }
 
 void wh_flow_tell_shut(wh_flow_state_t *state, int32_t station) {
-    state->stations[station].has_shut = true;
+    state->stations[station].real.has_shut = true;
 }
 
 void wh_flow_tell_worked(wh_flow_state_t *state, int32_t station) {
-    state->stations[station].has_worked = true;
+    state->stations[station].real.has_worked = true;
 }
 
 static wh_flow_event_t event_of(wh_flow_event_kind_t kind, int32_t station, int64_t begin_us,
@@ -66,14 +66,15 @@ void wh_flow_learn(wh_flow_state_t *state, int32_t robot) {
 
 static void end_shutting(wh_flow_state_t *state, int32_t number) {
     wh_flow_station_state_t *station = &state->stations[number];
-    const bool is_seen = station->closed_us >= station->shutting_us;
-    const int64_t end_us = is_seen ? station->closed_us : state->now_us;
-    wh_flow_event_t shut = event_of(WH_FLOW_EVENT_SHUT, number, station->shutting_us, end_us);
-    shut.robot = station->shutter;
-    station->is_shutting = station->has_shut = false;
-    if (station->shutter != WH_FLOW_NONE) {
+    const bool is_seen = station->real.closed_us >= station->real.shutting_us;
+    const int64_t end_us = is_seen ? station->real.closed_us : state->now_us;
+    wh_flow_event_t shut = event_of(WH_FLOW_EVENT_SHUT, number, station->real.shutting_us, end_us);
+    shut.robot = station->real.shutter;
+    station->real.is_shutting = station->real.has_shut = false;
+    if (station->real.shutter != WH_FLOW_NONE) {
         wh_flow_tool_t *tool = state->outside->tool;
-        tool->doors[wh_flow_of(tool, station->shutter, number)].close_us = end_us - station->shutting_us;
+        tool->doors[wh_flow_of(tool, station->real.shutter, number)].close_us =
+            end_us - station->real.shutting_us;
     }
     wh_flow_tell(state, &shut);
 }
@@ -81,25 +82,25 @@ static void end_shutting(wh_flow_state_t *state, int32_t number) {
 /* An ALIGN or a FLIP is the process of its station. */
 static void end_work(wh_flow_state_t *state, int32_t number) {
     wh_flow_station_state_t *station = &state->stations[number];
-    const int32_t wafer = station->work_wafer;
-    station->work_wafer = WH_FLOW_NONE;
-    station->has_worked = false;
+    const int32_t wafer = station->real.work_wafer;
+    station->real.work_wafer = WH_FLOW_NONE;
+    station->real.has_worked = false;
     state->wafers[wafer].done_us = state->now_us;
-    state->outside->tool->stations[number].process_us = state->now_us - station->work_us;
-    wh_flow_tell_process(state, wafer, station->work_us, state->now_us);
+    state->outside->tool->stations[number].process_us = state->now_us - station->real.work_us;
+    wh_flow_tell_process(state, wafer, station->real.work_us, state->now_us);
 }
 
 void wh_flow_end_told(wh_flow_state_t *state) {
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         wh_flow_station_state_t *station = &state->stations[i];
-        if (station->has_shut) {
+        if (station->real.has_shut) {
             end_shutting(state, i);
         }
-        if (station->has_worked) {
+        if (station->real.has_worked) {
             end_work(state, i);
-        } else if (station->work_wafer != WH_FLOW_NONE) {
-            const int64_t done_us = station->work_us + state->tool->stations[i].process_us;
-            state->wafers[station->work_wafer].done_us =
+        } else if (station->real.work_wafer != WH_FLOW_NONE) {
+            const int64_t done_us = station->real.work_us + state->tool->stations[i].process_us;
+            state->wafers[station->real.work_wafer].done_us =
                 done_us > state->now_us ? done_us : state->now_us + 1;
         }
         if (station->user != WH_FLOW_NONE && state->tool->robots[station->user].is_real &&
@@ -118,8 +119,8 @@ static void await_process(wh_flow_state_t *state, int32_t wafer, int64_t process
 static void begin_work(wh_flow_state_t *state, int32_t wafer, int32_t number) {
     const int64_t process_us = state->tool->stations[number].process_us;
     await_process(state, wafer, process_us);
-    state->stations[number].work_wafer = wafer;
-    state->stations[number].work_us = state->now_us;
+    state->stations[number].real.work_wafer = wafer;
+    state->stations[number].real.work_us = state->now_us;
     state->wafers[wafer].done_us = state->now_us + (process_us > 0 ? process_us : 1);
 }
 
@@ -137,7 +138,7 @@ bool wh_flow_begin_real(wh_flow_state_t *state, int32_t wafer, int32_t station) 
 bool wh_flow_pump_real(wh_flow_state_t *state, int32_t station, wh_flow_side_t side) {
     const bool is_real = state->tool->stations[station].is_real;
     const bool pumps = !is_real || state->outside->pump(state->outside->context, station, side);
-    state->stations[station].runs = state->stations[station].runs || (is_real && pumps);
+    state->stations[station].real.runs = state->stations[station].real.runs || (is_real && pumps);
     return pumps;
 }
 
@@ -151,7 +152,8 @@ bool wh_flow_is_real_busy(const wh_flow_state_t *state) {
     bool is_busy = false;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         const wh_flow_station_state_t *station = &state->stations[i];
-        is_busy = is_busy || station->runs || station->is_shutting || station->work_wafer != WH_FLOW_NONE;
+        is_busy = is_busy || station->real.runs || station->real.is_shutting ||
+                  station->real.work_wafer != WH_FLOW_NONE;
     }
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
         const wh_flow_action_t action = state->robots[r].action;
@@ -190,7 +192,7 @@ void wh_flow_tell_pump(wh_flow_state_t *state, int32_t station, int64_t begin_us
 }
 
 void wh_flow_tell_closed(wh_flow_state_t *state, int32_t station, int64_t at_us) {
-    state->stations[station].closed_us = at_us;
+    state->stations[station].real.closed_us = at_us;
 }
 
 void wh_flow_tell_left(wh_flow_state_t *state, int32_t wafer, int64_t done_us, int64_t lifted_us) {
@@ -253,7 +255,7 @@ static void see_place(wh_flow_state_t *state, int32_t number, const wh_flow_stat
     place->clean_us = is_cleaning && !clock->is_around ? ends_us(state, clock->left_us) : WH_FLOW_NEVER;
     station->clean_us = sooner(place->clean_us, station->clean_us);
     station->has_due = station->has_due || place->is_clean_due;
-    station->runs = station->runs || is_cleaning || clock->phase == WH_CLOCK_PROCESSING;
+    station->real.runs = station->real.runs || is_cleaning || clock->phase == WH_CLOCK_PROCESSING;
     if (place->wafer != WH_FLOW_NONE && !state->wafers[place->wafer].is_over) {
         see_wafer(state, place->wafer, of, clock, began_us);
         const int64_t done_us = state->wafers[place->wafer].done_us;
@@ -265,7 +267,7 @@ void wh_flow_see_station(wh_flow_state_t *state, int32_t number, const wh_flow_s
                          const wh_clock_t *clock, const wh_clock_place_t places[], int64_t began_us) {
     wh_flow_station_state_t *station = &state->stations[number];
     const int32_t first = state->tool->stations[number].first_place;
-    station->runs = clock->is_pumping;
+    station->real.runs = clock->is_pumping;
     station->side = clock->side;
     station->pump_us = clock->is_pumping ? ends_us(state, clock->left_us) : WH_FLOW_NEVER;
     station->pump_to = clock->pump_to;

@@ -34,9 +34,9 @@ static bool is_any_under_way(const wh_flow_state_t *state) {
 static bool is_any_to_come(const wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     bool found =
-        wh_flow_is_real_busy(state) || is_ahead(state, state->next_start_us) ||
-        (state->next_lot < plan->lot_count && is_ahead(state, plan->lots[state->next_lot].arrives_us)) ||
-        state->next_down < plan->down_count;
+        wh_flow_is_real_busy(state) || is_ahead(state, state->next.start_us) ||
+        (state->next.lot < plan->lot_count && is_ahead(state, plan->lots[state->next.lot].arrives_us)) ||
+        state->next.down < plan->down_count;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         const wh_flow_station_state_t *station = &state->stations[i];
         found = found || is_ahead(state, station->done_us) || is_ahead(state, station->clean_us) ||

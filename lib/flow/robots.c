@@ -116,7 +116,7 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
     state->wafers[wafer].taker = robot;
     ++state->leaving[wh_flow_step_index(state, wafer, at->step)];
     if (at->step == 0 && state->plan->takt_us > 0) {
-        state->next_start_us = state->now_us + state->plan->takt_us;
+        state->next.start_us = state->now_us + state->plan->takt_us;
     }
     if (!door->is_real) {
         tell_stay(state, robot, wafer, door->open_us);
@@ -316,9 +316,9 @@ static void come_out(wh_flow_state_t *state, int32_t robot) {
         &state->tool->doors[wh_flow_of(state->tool, robot, state->robots[robot].station)];
     station->user = WH_FLOW_NONE;
     ++station->accesses;
-    station->is_shutting = door->is_real;
-    station->shutter = robot;
-    station->shutting_us = state->now_us;
+    station->real.is_shutting = door->is_real;
+    station->real.shutter = robot;
+    station->real.shutting_us = state->now_us;
     station->busy_us = state->now_us + door->close_us;
     station->shut_us = door->is_real ? state->now_us : wh_flow_slice_us(state, station->busy_us);
 }

@@ -316,8 +316,8 @@ static void look(const world_t *world) {
     const wh_flow_state_t *state = world->state;
     world->safety->wafer_count = 0;
     look_at_steps(world);
-    for (size_t i = 0; i < state->coming_count; ++i) {
-        const int32_t place = state->coming[i], w = state->places[place].coming;
+    for (size_t i = 0; i < state->coming.count; ++i) {
+        const int32_t place = state->coming.places[i], w = state->places[place].coming;
         if (comes(world, place)) {
             put(world, &(inside_t){w, wh_flow_next_step(state, w), place, true}, true);
         }

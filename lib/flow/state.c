@@ -19,16 +19,15 @@ static void open_stations(wh_flow_state_t *state) {
             WH_FLOW_NONE, WH_FLOW_NONE, -1, WH_FLOW_NEVER, WH_FLOW_NEVER, idle_us, 0, WH_FLOW_NONE, false};
     }
     for (size_t i = 0; i < tool->station_count; ++i) {
-        state->stations[i] = (wh_flow_station_state_t){.user = WH_FLOW_NONE,
-                                                       .shutter = WH_FLOW_NONE,
-                                                       .work_wafer = WH_FLOW_NONE,
-                                                       .closed_us = -1,
-                                                       .clean_us = WH_FLOW_NEVER,
-                                                       .idle_us = idle_of(&tool->stations[i]),
-                                                       .down_us = WH_FLOW_NEVER,
-                                                       .pump_us = WH_FLOW_NEVER,
-                                                       .done_us = WH_FLOW_NEVER,
-                                                       .side = tool->stations[i].side};
+        state->stations[i] = (wh_flow_station_state_t){
+            .user = WH_FLOW_NONE,
+            .clean_us = WH_FLOW_NEVER,
+            .idle_us = idle_of(&tool->stations[i]),
+            .down_us = WH_FLOW_NEVER,
+            .pump_us = WH_FLOW_NEVER,
+            .done_us = WH_FLOW_NEVER,
+            .side = tool->stations[i].side,
+            .real = {.shutter = WH_FLOW_NONE, .work_wafer = WH_FLOW_NONE, .closed_us = -1}};
     }
 }
 
@@ -60,7 +59,7 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
         .leaving = wh_array_new(plan->step_count, sizeof *state->leaving),
         .heads = wh_array_new(plan->step_count, sizeof *state->heads),
         .tails = wh_array_new(plan->step_count, sizeof *state->tails),
-        .coming = wh_array_new(tool->place_count, sizeof *state->coming),
+        .coming.places = wh_array_new(tool->place_count, sizeof *state->coming.places),
         .safety = wh_flow_safety_open(tool),
     };
     open_stations(state);
@@ -89,7 +88,7 @@ void wh_flow_state_close(wh_flow_state_t *state) {
     free(state->leaving);
     free(state->heads);
     free(state->tails);
-    free(state->coming);
+    free(state->coming.places);
     wh_flow_safety_close(state->safety);
     free(state->cause);
     memset(state, 0, sizeof *state);
@@ -143,11 +142,11 @@ void wh_flow_come(wh_flow_state_t *state, int32_t place, int32_t wafer) {
     state->places[place].coming = wafer;
     ++state->changes;
     if (!came && wafer != WH_FLOW_NONE) {
-        state->coming[state->coming_count++] = place;
+        state->coming.places[state->coming.count++] = place;
     }
-    for (size_t i = 0; came && wafer == WH_FLOW_NONE && i < state->coming_count; ++i) {
-        if (state->coming[i] == place) {
-            state->coming[i] = state->coming[--state->coming_count];
+    for (size_t i = 0; came && wafer == WH_FLOW_NONE && i < state->coming.count; ++i) {
+        if (state->coming.places[i] == place) {
+            state->coming.places[i] = state->coming.places[--state->coming.count];
             return;
         }
     }

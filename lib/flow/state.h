@@ -17,6 +17,14 @@ typedef struct {
     bool is_clean_due;
 } wh_flow_place_t;
 
+/* Real things in a station: its door shuts behind a robot, or before the first one; a wafer is worked on. */
+typedef struct {
+    bool is_shutting, has_shut, has_worked, runs;
+    int32_t shutter, work_wafer;  /* that robot; that wafer */
+    int64_t shutting_us, work_us; /* since when */
+    int64_t closed_us;            /* when something began there behind shut doors */
+} wh_flow_station_real_t;
+
 typedef struct {
     int32_t user;     /* the robot whose blade is in it or next, or WH_FLOW_NONE */
     int64_t shut_us;  /* until then its door shuts */
@@ -34,11 +42,7 @@ typedef struct {
     int32_t accesses; /* picks, places and swaps that have ended */
     int32_t turned;   /* turns of its own list that have begun */
     bool has_due;     /* one of its places must be cleaned, and is not yet */
-    /* what is real: its door shuts behind that robot, or before the first one; a wafer is worked on */
-    bool is_shutting, has_shut, has_worked, runs;
-    int32_t shutter, work_wafer;
-    int64_t shutting_us, work_us; /* since when */
-    int64_t closed_us;            /* when something began there behind shut doors */
+    wh_flow_station_real_t real;
 } wh_flow_station_state_t;
 
 typedef struct {
@@ -144,6 +148,18 @@ typedef struct {
     int64_t slice_us;     /* what ends by itself ends with a slice */
 } wh_flow_outside_t;
 
+/* The next things of the plan. */
+typedef struct {
+    size_t lot, down; /* their indices in the plan */
+    int64_t start_us; /* by takt */
+} wh_flow_next_t;
+
+/* The places into which a wafer comes, in no order. */
+typedef struct {
+    int32_t *places;
+    size_t count;
+} wh_flow_coming_t;
+
 typedef struct wh_flow_state {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
@@ -155,17 +171,15 @@ typedef struct wh_flow_state {
     int32_t *counts;        /* by step: from the begin of the transfer in to the end of the pick out */
     int32_t *leaving;       /* by step: those of them whose pick out runs */
     int32_t *heads, *tails; /* by step: the wafers that lie there */
-    int32_t *coming;        /* the places into which a wafer comes, in no order */
-    size_t coming_count;
+    wh_flow_coming_t coming;
     struct wh_flow_safety *safety; /* see safe.h */
     uint64_t changes;              /* of where wafers are, and where they go */
-    size_t next_lot, next_down;
-    size_t over;           /* wafers at their end, lost ones with them */
-    size_t lost;           /* wafers in stations that failed */
-    size_t failed;         /* stations that never work again */
-    int32_t first_open;    /* all wafers before this one are over */
-    int64_t next_start_us; /* by takt */
-    int64_t last_us;       /* the end of the last placing */
+    wh_flow_next_t next;
+    size_t over;        /* wafers at their end, lost ones with them */
+    size_t lost;        /* wafers in stations that failed */
+    size_t failed;      /* stations that never work again */
+    int32_t first_open; /* all wafers before this one are over */
+    int64_t last_us;    /* the end of the last placing */
     wh_flow_listener_t listener;
     const wh_flow_outside_t *outside; /* null: nothing is real */
     bool checks_safety; /* rules leave out transfers after which wafers could block each other */

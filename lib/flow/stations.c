@@ -327,13 +327,13 @@ static bool is_any_clean_due(const wh_flow_state_t *state, int32_t number) {
 
 void wh_flow_stations_begin(wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
-    while (state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us) {
-        begin_down(state, &plan->downs[state->next_down++]);
+    while (state->next.down < plan->down_count && plan->downs[state->next.down].at_us <= state->now_us) {
+        begin_down(state, &plan->downs[state->next.down++]);
     }
     wh_flow_end_routes(state); /* a lot may be over by that, and make room for another one */
-    while (state->next_lot < plan->lot_count && plan->lots[state->next_lot].arrives_us <= state->now_us &&
-           make_room(state, &plan->lots[state->next_lot])) {
-        arrive(state, &plan->lots[state->next_lot++]);
+    while (state->next.lot < plan->lot_count && plan->lots[state->next.lot].arrives_us <= state->now_us &&
+           make_room(state, &plan->lots[state->next.lot])) {
+        arrive(state, &plan->lots[state->next.lot++]);
         wh_flow_end_routes(state);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
@@ -367,12 +367,12 @@ int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
             *idle_us = sooner(state, *idle_us, station->idle_us);
         }
     }
-    next_us = sooner(state, next_us, state->next_start_us);
-    if (state->next_lot < plan->lot_count) {
-        next_us = sooner(state, next_us, plan->lots[state->next_lot].arrives_us);
+    next_us = sooner(state, next_us, state->next.start_us);
+    if (state->next.lot < plan->lot_count) {
+        next_us = sooner(state, next_us, plan->lots[state->next.lot].arrives_us);
     }
-    if (state->next_down < plan->down_count) {
-        next_us = sooner(state, next_us, plan->downs[state->next_down].at_us);
+    if (state->next.down < plan->down_count) {
+        next_us = sooner(state, next_us, plan->downs[state->next.down].at_us);
     }
     return next_us;
 }

@@ -197,7 +197,7 @@ static void take(const wh_flow_steadily_t *steadily, const wh_flow_state_t *stat
     into->count = 0;
     into->hash = WH_HASH_START;
     add(into, state->is_relaxed);
-    add_ahead(into, state, state->next_start_us);
+    add_ahead(into, state, state->next.start_us);
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
         add_robot(into, steadily, state, &state->robots[r]);
     }
@@ -239,8 +239,8 @@ static bool is_equal(const snapshot_t *a, const snapshot_t *b) {
 int32_t wh_flow_steadily_look(wh_flow_steadily_t *steadily, const wh_flow_state_t *state,
                               const int64_t ends_us[], size_t count, int64_t *cycle_us) {
     const wh_flow_plan_t *plan = state->plan;
-    if (plan->rule == WH_FLOW_LISTS || plan->rule == WH_FLOW_OWN || state->next_down < plan->down_count ||
-        state->next_lot < plan->lot_count) {
+    if (plan->rule == WH_FLOW_LISTS || plan->rule == WH_FLOW_OWN || state->next.down < plan->down_count ||
+        state->next.lot < plan->lot_count) {
         return 0;
     }
     snapshot_t *now = &steadily->kept[steadily->next % KEPT];

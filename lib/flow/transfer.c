@@ -27,7 +27,7 @@ int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t 
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const wh_flow_station_state_t *now = &state->stations[station];
-    if (now->user != WH_FLOW_NONE || now->is_shutting || now->shut_us > state->now_us ||
+    if (now->user != WH_FLOW_NONE || now->real.is_shutting || now->shut_us > state->now_us ||
         now->down_us != WH_FLOW_NEVER) {
         return false;
     }
@@ -292,5 +292,5 @@ int64_t wh_flow_takeable_us(const wh_flow_state_t *state, int32_t robot, int32_t
         return WH_FLOW_NEVER;
     }
     from_us = later(from_us, open_us);
-    return state->wafers[wafer].step == 0 ? later(from_us, state->next_start_us) : from_us;
+    return state->wafers[wafer].step == 0 ? later(from_us, state->next.start_us) : from_us;
 }

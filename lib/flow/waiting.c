@@ -8,7 +8,7 @@ static wh_flow_robot_class_t entrance(const wh_flow_state_t *state, int32_t stat
     if (at->down_us != WH_FLOW_NEVER) {
         return WH_FLOW_ROBOT_WAITS_DOWN;
     }
-    if (at->user != WH_FLOW_NONE || at->is_shutting || at->shut_us > state->now_us) {
+    if (at->user != WH_FLOW_NONE || at->real.is_shutting || at->shut_us > state->now_us) {
         return WH_FLOW_ROBOT_WAITS_ROBOT;
     }
     return WH_FLOW_ROBOT_WAITS_PUMP;
@@ -26,7 +26,7 @@ static wh_flow_robot_class_t placing(const wh_flow_state_t *state, int32_t numbe
 
 static wh_flow_robot_class_t taking(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
     if (wafer == WH_FLOW_NONE || state->wafers[wafer].done_us > state->now_us ||
-        (state->wafers[wafer].step == 0 && state->next_start_us > state->now_us)) {
+        (state->wafers[wafer].step == 0 && state->next.start_us > state->now_us)) {
         return WH_FLOW_ROBOT_WAITS_WAFER;
     }
     const int32_t station = wh_flow_station_of(state, wafer);

@@ -44,9 +44,9 @@ static bool serve_ports(wh_host_t *host) {
     unsigned told = 0;
     do {
         told = 0;
-        ++host->turns;
+        ++host->so_far.turns;
         for (size_t i = 0; i < host->count; ++i) {
-            told |= serve_controller(host, host->controllers[(i + (size_t)host->turns) % host->count]);
+            told |= serve_controller(host, host->controllers[(i + (size_t)host->so_far.turns) % host->count]);
         }
         goes_on = goes_on || told != 0;
     } while (told != 0);
@@ -70,8 +70,8 @@ static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
                                   wait > 0 ? (long)(wait % 1000000) * 1000 : 0};
     (void)ppoll(polls, (nfds_t)count, &time, NULL);
     const bool goes_on = serve_ports(host);
-    if (host->tick) {
-        host->tick(host->tick_user);
+    if (host->callbacks.tick) {
+        host->callbacks.tick(host->callbacks.tick_user);
     }
     return goes_on;
 }
@@ -125,7 +125,7 @@ static bool wait_held(wh_host_t *host) {
 static void tell_events(wh_host_t *host, const wh_state_t *state) {
     for (size_t e = 0; e < state->event_count; ++e) {
         const wh_event_kind_t kind = state->events[e].kind;
-        host->last_complaint = wh_record_is_complaint(kind) ? kind : host->last_complaint;
+        host->seen.complaint = wh_record_is_complaint(kind) ? kind : host->seen.complaint;
         for (size_t i = 0; i < host->count; ++i) {
             wh_controller_event(host->controllers[i], &state->events[e], (double)state->utime / 1e6);
         }
@@ -139,15 +139,15 @@ static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_
         valves |= command->grippers[g].valve == WH_VALVE_OPEN ? 1U << g : 0;
     }
     for (size_t g = 0; g < command->gripper_count; ++g) {
-        if (((valves ^ host->valves) >> g & 1U) != 0) {
+        if (((valves ^ host->seen.valves) >> g & 1U) != 0) {
             wh_host_tell_change(host, WH_HOST_VALVE, g, (int)(valves >> g & 1U));
         }
-        if (((state->sensors ^ host->sensors) >> g & 1U) != 0) {
+        if (((state->sensors ^ host->seen.sensors) >> g & 1U) != 0) {
             wh_host_tell_change(host, WH_HOST_SENSOR, g, (int)(state->sensors >> g & 1U));
         }
     }
-    host->valves = valves;
-    host->sensors = state->sensors;
+    host->seen.valves = valves;
+    host->seen.sensors = state->sensors;
 }
 
 /* Serves the ports until the slice's time is over. */

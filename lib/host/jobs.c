@@ -93,7 +93,7 @@ static void end_action(wh_controller_t *controller, bool failed) {
     if (failed) {
         wh_action_t *told = &controller->leader->action;
         told->failed = controller->action.ended;
-        told->failed_order = ++host->failures;
+        told->failed_order = ++host->so_far.failures;
         (void)snprintf(told->failed_line, sizeof told->failed_line, "%s", controller->action.lines.lines[at]);
     }
     if (host->holder == controller) {

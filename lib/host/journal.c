@@ -21,8 +21,8 @@ void wh_host_note(wh_host_t *host, const wh_controller_t *controller, wh_transcr
         .bytes = bytes,
         .size = size < WH_TRANSCRIPT_BYTES ? size : WH_TRANSCRIPT_BYTES,
     };
-    if (host->heard) {
-        host->heard(host->heard_user, &entry);
+    if (host->callbacks.heard) {
+        host->callbacks.heard(host->callbacks.heard_user, &entry);
     }
     if (host->transcript) {
         (void)(host->writes_json ? wh_transcript_write_json : wh_transcript_write)(host->transcript, &entry);

@@ -133,7 +133,7 @@ static void take_on_action(wh_controller_t *controller, wh_request_t *request, c
     controller->action.is_running = controller->action.has_begun = false;
     controller->action.is_stopped = false;
     controller->action.is_left = false;
-    controller->action.order = ++controller->host->orders;
+    controller->action.order = ++controller->host->so_far.orders;
     controller->action.since_us = wh_host_now(controller->host);
     controller->action.request = *request;
     controller->action.lines = *lines;

@@ -170,6 +170,29 @@ typedef struct {
     wh_pose_t poses[WH_GRIPPERS]; /* of the blades, now */
 } wh_host_texts_t;
 
+/* The caller's functions; each may be null. */
+typedef struct {
+    /* Called with each entry of a transcript, whether one is written or not. */
+    void (*heard)(void *user, const wh_transcript_entry_t *entry);
+    void *heard_user;
+    /* Called whenever ports were served, at least every 100 ms, but not within the link's exchange. */
+    void (*tick)(void *user);
+    void *tick_user;
+} wh_host_callbacks_t;
+
+/* Counts since opening. */
+typedef struct {
+    uint64_t orders;   /* accepted actions */
+    uint64_t turns;    /* the times that ports were served */
+    uint64_t failures; /* of actions that were begun */
+} wh_host_counts_t;
+
+/* The cell as the host saw it last. */
+typedef struct {
+    uint32_t sensors, valves;  /* of the last slice, by gripper: on, open */
+    wh_event_kind_t complaint; /* the last one, where session->complaints says that there was one */
+} wh_host_seen_t;
+
 struct wh_host {
     /* Set by the caller before wh_host_add. */
     wh_session_t *session; /* opened later, with wh_host_listener as its listener */
@@ -177,12 +200,7 @@ struct wh_host {
     bool shows_one_run;    /* RESET, RESTORE and UNDO are refused */
     const volatile sig_atomic_t *stop;
     wh_mcs_listener_t next; /* who else listens; may be all null */
-    /* Called with each entry of a transcript, whether one is written or not; may be null. */
-    void (*heard)(void *user, const wh_transcript_entry_t *entry);
-    void *heard_user;
-    void (*tick)(void *user); /* called whenever ports were served, at least every 100 ms, but not within the
-                                 link's exchange; may be null */
-    void *tick_user;
+    wh_host_callbacks_t callbacks;
     const wh_allow_t *allow; /* who may connect from another machine; null: all */
     FILE *transcript;        /* null: none */
     bool writes_json;        /* the transcript has JSON lines */
@@ -197,11 +215,9 @@ struct wh_host {
     bool is_held;             /* by a HOLD */
     bool is_told_to_stop;     /* of what runs */
     bool is_ended;            /* the operator ended it: nothing is begun any more */
-    uint64_t orders, turns;   /* accepted actions, and the times that ports were served, so far */
-    uint64_t failures;        /* of actions that were begun, so far */
+    wh_host_counts_t so_far;
     wh_host_clock_t clock;
-    uint32_t sensors, valves;       /* of the last slice, by gripper: on, open */
-    wh_event_kind_t last_complaint; /* of the cell, where session->complaints says that there was one */
+    wh_host_seen_t seen;
     uint64_t *shown; /* how often a host was told our error of this number, of WH_HOST_NUMBERS */
     wh_host_texts_t *texts;
 };

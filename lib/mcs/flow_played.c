@@ -74,7 +74,7 @@ static void shut_doors(wh_flow_played_t *played) {
             const int32_t door = wh_layout_door_of(played->mcs->layout, s, r);
             if (door != WH_NONE && tool->serves[wh_flow_of(tool, (int32_t)r, (int32_t)s)] &&
                 strcmp(wh_mcs_door_word(played->mcs, (size_t)door), "shut") != 0) {
-                played->engine->state.stations[s].is_shutting = true;
+                played->engine->state.stations[s].real.is_shutting = true;
             }
         }
     }
@@ -324,7 +324,7 @@ static int take_shutting(lua_State *L) {
     const wh_flow_played_t *played = played_of(L);
     const int32_t station = wh_mcs_index(L, 1, played->tool->station_count);
     const wh_flow_station_state_t *at = &played->engine->state.stations[station];
-    if (at->is_shutting && !at->has_shut && !played->is_taken[station]) {
+    if (at->real.is_shutting && !at->real.has_shut && !played->is_taken[station]) {
         played->is_taken[station] = true;
         push_doors(L, played, station);
         return 1;
@@ -349,8 +349,8 @@ static int take_work(lua_State *L) {
     const wh_flow_played_t *played = played_of(L);
     const int32_t station = wh_mcs_index(L, 1, played->tool->station_count);
     const wh_flow_station_state_t *at = &played->engine->state.stations[station];
-    const int32_t wafer = at->work_wafer;
-    if (wafer == WH_FLOW_NONE || at->has_worked || played->is_taken[station]) {
+    const int32_t wafer = at->real.work_wafer;
+    if (wafer == WH_FLOW_NONE || at->real.has_worked || played->is_taken[station]) {
         lua_pushboolean(L, false);
         return played->engine->is_over ? 1 : 0;
     }

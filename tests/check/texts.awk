@@ -1,5 +1,6 @@
 # Finds what no tool reports: language extensions in the embedded library, reserved names, and suppressions, which belong into
-# lib/DEVIATIONS.md. It also finds what the formatter leaves, which neither shortens nor mends a comment. Run with LC_ALL=C.
+# lib/DEVIATIONS.md. It also finds what the formatter leaves, which neither shortens nor mends a comment, and large structs. Run with
+# LC_ALL=C.
 
 function report(rule) {
     print FILENAME ":" FNR ":1: warning: " $0 " [" rule "]"
@@ -33,4 +34,47 @@ FILENAME ~ tidy {
         report("torn-member")
     }
     type_alone = line ~ /^ +(const )?[a-z_0-9]+_t$/
+}
+
+# A struct or a union has at most 25 members, so that it has one subject. Each member ends with a semicolon or a comma; those of
+# a nested struct count there. The finding stands at the closing line. C alone: classes of C++ have functions.
+function bare(line) {
+    gsub(/'\\?.'/, "", line)
+    gsub(/"([^"\\]|\\.)*"/, "", line)
+    if (in_comment && !sub(/^.*\*\//, "", line)) {
+        return ""
+    }
+    gsub(/\/\*([^*]|\*+[^*\/])*\*+\//, "", line)
+    in_comment = sub(/\/\*.*/, "", line)
+    return line
+}
+function count_members(line) {
+    if (line ~ /^ *\}/) {
+        if (members[depth] > 25) {
+            report("struct-members")
+        }
+        --depth
+    } else if (line ~ /\{/ && line !~ /\}/) {
+        members[++depth] = 0
+        return
+    }
+    line = begun line
+    while (gsub(/\([^()]*\)|\{[^{}]*\}/, "", line)) {
+    }
+    # A function's arguments go on in the next line.
+    begun = line ~ /\(/ ? line : ""
+    members[depth] += begun == "" ? gsub(/[;,]/, "", line) : 0
+}
+FNR == 1 {
+    depth = in_comment = 0
+    begun = ""
+}
+FILENAME !~ /[.][ch]$/ {
+    next
+}
+{
+    line = bare($0)
+}
+depth > 0 || (line ~ /(^|[ (])(struct|union)( [A-Za-z_0-9]+)* *\{/ && line !~ /\}/) {
+    count_members(line)
 }

@@ -118,7 +118,7 @@ static void take_up(player_t *player, const wh_flow_tool_t *timed) {
         }
     }
     for (size_t s = 0; s < timed->station_count; ++s) {
-        if (state->stations[s].is_shutting && player->shut_us[s] == WH_FLOW_NEVER) {
+        if (state->stations[s].real.is_shutting && player->shut_us[s] == WH_FLOW_NEVER) {
             player->shut_us[s] = state->now_us + (int64_t)wh_test_below(3000000);
         }
     }
