@@ -434,27 +434,17 @@ static int open_libraries(lua_State *L) {
     const wh_dialect_t *dialect = lua_touserdata(L, 1);
     luaopen_wh(L);
     lua_setglobal(L, "wh");
-    if (strcmp(dialect->path, WH_DIALECT_CONTROL) == 0) {
+    if (wh_dialect_is_testers(dialect->path)) {
         wh_dialect_open_tester(L);
     }
     return wh_dialect_open_host(L);
-}
-
-/* The tester's own, which is built in; null: a file. */
-static const wh_embedded_t *find_embedded(const char *path) {
-    for (size_t i = 0; strcmp(path, WH_DIALECT_CONTROL) == 0 && i < wh_embedded_count; ++i) {
-        if (strcmp(wh_embedded[i].name, "dialects/control.lua") == 0) {
-            return &wh_embedded[i];
-        }
-    }
-    return NULL;
 }
 
 /* Runs protected. */
 static int run_file(lua_State *L) {
     wh_sandbox_result_t result;
     const wh_dialect_t *dialect = lua_touserdata(L, 1);
-    const wh_embedded_t *file = find_embedded(dialect->path);
+    const wh_embedded_t *file = wh_dialect_find_embedded(dialect->path);
     if (file ? !wh_sandbox_evaluate_code(L, file->name, file->text, file->size, &result)
              : !wh_sandbox_evaluate(L, dialect->path, &result)) {
         return luaL_error(L, "%s", result.message);

@@ -2,6 +2,7 @@
 #ifndef WH_HOST_DIALECT_INTERNAL_H
 #define WH_HOST_DIALECT_INTERNAL_H
 
+#include "../script/embedded.h"
 #include "../script/reader.h"
 #include "dialect.h"
 
@@ -11,6 +12,12 @@ void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
 /* The starts of a framing, such as "!", "$" with their quotes; none: there is none. Returns the text. */
 #define WH_DIALECT_STARTS_BYTES (WH_FRAMING_MARKS * (4 * WH_FRAMING_MARK + 4) + 1)
 const char *wh_dialect_list_starts(const wh_framing_t *framing, char text[WH_DIALECT_STARTS_BYTES]);
+
+/* True for the tester's own dialect: built in, or the file that it is made of. */
+bool wh_dialect_is_testers(const char *path);
+
+/* The tester's own dialect as it is built in; null: the path is a file's. */
+const wh_embedded_t *wh_dialect_find_embedded(const char *path);
 
 /* Sets the global table `known` of the dialect of a tester: `kinds` of events and names of `errors`, both in
  * their order, and meant(word, names), which returns "; did you mean NAME?", or "". */

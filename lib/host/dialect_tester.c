@@ -1,16 +1,34 @@
-/* The table `known` of the tester's own dialect: names that a tester may type, and the one that it may have
- * meant. */
+/* The tester's own dialect: where it is, and its table `known`, the names that a tester may type, and the one
+ * that it may have meant. */
 #include <string.h>
 
 #include <lauxlib.h>
 
 #include "../grasp/event.h"
+#include "../script/embedded.h"
 #include "../script/wh_module_values.h"
 #include "../text/nearest.h"
 #include "dialect_internal.h"
 #include "state.h"
 
 #define MOST_NAMES 160
+#define TESTERS "dialects/control.lua"
+
+bool wh_dialect_is_testers(const char *path) {
+    const size_t length = strlen(path);
+    const size_t name = strlen(TESTERS);
+    return strcmp(path, WH_DIALECT_CONTROL) == 0 ||
+           (length >= name && strcmp(path + length - name, TESTERS) == 0);
+}
+
+const wh_embedded_t *wh_dialect_find_embedded(const char *path) {
+    for (size_t i = 0; strcmp(path, WH_DIALECT_CONTROL) == 0 && i < wh_embedded_count; ++i) {
+        if (strcmp(wh_embedded[i].name, TESTERS) == 0) {
+            return &wh_embedded[i];
+        }
+    }
+    return NULL;
+}
 
 /* known.meant(word, names): "; did you mean NAME?", or "". */
 static int find_meant(lua_State *L) {
