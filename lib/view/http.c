@@ -2,7 +2,6 @@
 
 #if defined(WH_MICROHTTPD)
 
-#include <errno.h>
 #include <inttypes.h>
 #include <microhttpd.h>
 #include <poll.h>
@@ -14,13 +13,11 @@
 
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "listen.h"
 #include "origin.h"
 
 /* A client that listens hears at least this often: so one that is gone is noticed, us. */
 #define BEAT_US 5000000
-
-/* The most clients whose connections wait for us to take them. */
-#define BACKLOG 32
 
 static const char beat[] = ": \n\n";
 
@@ -372,64 +369,6 @@ void wh_http_serve(wh_http_t *http) {
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-static int listen_at(const wh_address_t *address) {
-    const int on = 1;
-    const int fd = socket(address->bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (fd < 0 || setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
-        bind(fd, (const struct sockaddr *)&address->bytes, address->size) != 0 || listen(fd, BACKLOG) != 0) {
-        const int problem = errno;
-        if (fd >= 0) {
-            (void)close(fd);
-        }
-        errno = problem;
-        return -1;
-    }
-    return fd;
-}
-
-/* Listens at the usual port, or at any if another server is there. */
-static int listen_anywhere(wh_address_t *address) {
-    char usual[WH_HTTP_PLACE_BYTES];
-    (void)snprintf(usual, sizeof usual, "%d", WH_HTTP_PORT);
-    (void)wh_address_read(usual, address);
-    const int fd = listen_at(address);
-    if (fd >= 0 || errno != EADDRINUSE) {
-        return fd;
-    }
-    (void)wh_address_read("0", address);
-    return listen_at(address);
-}
-
-static int open_listener(const char *text, wh_address_t *address, char problem[WH_HTTP_PROBLEM_BYTES]) {
-    if (text[0] != '\0' && !wh_address_read(text, address)) {
-        (void)snprintf(problem, WH_HTTP_PROBLEM_BYTES,
-                       "%.200s: no address (expected " WH_ADDRESS_EXPECTED ")", text);
-        return -1;
-    }
-    const int fd = text[0] != '\0' ? listen_at(address) : listen_anywhere(address);
-    if (fd < 0) {
-        (void)snprintf(problem, WH_HTTP_PROBLEM_BYTES, "%.200s: %s", text[0] != '\0' ? text : "127.0.0.1",
-                       strerror(errno));
-        return -1;
-    }
-    address->size = sizeof address->bytes;
-    (void)getsockname(fd, (struct sockaddr *)&address->bytes, &address->size);
-    return fd;
-}
-
-/* A browser does not go to 0.0.0.0. */
-static void note_place(wh_http_t *http) {
-    char all[WH_HTTP_PLACE_BYTES];
-    wh_address_write(&http->place, all, sizeof all);
-    const char *port = strrchr(all, ':');
-    if (wh_address_is_any(&http->place)) {
-        (void)snprintf(http->text, sizeof http->text, "%s%.8s",
-                       http->place.bytes.ss_family == AF_INET ? "127.0.0.1" : "[::1]", port);
-    } else {
-        (void)snprintf(http->text, sizeof http->text, "%s", all);
-    }
-}
-
 static void ignore(void *user, const char *format, va_list arguments) {
     (void)user;
     (void)format;
@@ -440,12 +379,12 @@ wh_http_t *wh_http_open(const char *address, const wh_http_source_t *source,
                         char problem[WH_HTTP_PROBLEM_BYTES]) {
     wh_http_t *http = wh_array_new(1, sizeof *http);
     http->source = *source;
-    const int fd = open_listener(address, &http->place, problem);
+    const int fd = wh_listen_open(address, &http->place, problem);
     if (fd < 0) {
         free(http);
         return NULL;
     }
-    note_place(http);
+    wh_listen_name(&http->place, http->text);
     http->daemon = MHD_start_daemon(
         MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, on_request, http, MHD_OPTION_EXTERNAL_LOGGER,
         ignore, NULL, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
