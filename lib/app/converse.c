@@ -87,7 +87,7 @@ static bool add_ports(wh_host_t *host) {
         if (strcmp(head->name, "port") != 0) {
             continue;
         }
-        if (!file || at == WH_HOST_CONTROLLERS) {
+        if (!file || at == (size_t)WH_HOST_CONTROLLERS) {
             return refuse_line(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
         }
         const wh_host_port_t port = {.dialect = file + 1, .mechanism = mechanism_of(played, i)};

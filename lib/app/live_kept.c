@@ -66,7 +66,7 @@ static void make_room(wh_live_kept_t *kept, const entries_t *entries, void *list
     for (size_t i = 0; i < 2 * half; ++i) {
         if (entries->texts[i % 2] != NO_TEXT) {
             char *text;
-            memcpy(&text, items + (i / 2) * entries->size + entries->texts[i % 2], sizeof(char *));
+            memcpy(&text, items + (i / 2) * entries->size + entries->texts[i % 2], sizeof text);
             free(text);
         }
     }

@@ -44,12 +44,14 @@ static bool is_played(const wh_best_result_t *result) {
     return is_same;
 }
 
-static int hand_on(const wh_run_arguments_t *arguments, wh_best_result_t *result, size_t width) {
+static int hand_on(const wh_run_arguments_t *arguments, const wh_best_result_t *of, size_t width) {
     const wh_style_t style = wh_style_of(stdout);
     wh_flow_best_t best;
+    wh_best_result_t found = *of;
+    const wh_best_result_t *result = &found;
     int status = WH_EXIT_USAGE;
-    search(result, width, &best);
-    result->best = &best;
+    search(of, width, &best);
+    found.best = &best;
     if (!best.lists || is_played(result)) {
         const int printed = arguments->json ? wh_best_print_json(result, stdout)
                                             : wh_best_print_table(result, stdout, &style);
@@ -73,7 +75,7 @@ static int find(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
         free(why);
         return WH_EXIT_USAGE;
     }
-    wh_best_result_t result = {
+    const wh_best_result_t result = {
         arguments->run.script, flow->tool, &flow->plan,
         flow->figures.result.end == WH_FLOW_DONE ? flow->figures.result.makespan_us : WH_FLOW_NEVER, NULL};
     return hand_on(arguments, &result, width);

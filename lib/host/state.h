@@ -23,13 +23,10 @@
 #define WH_HOST_LUA_US 2000
 /* Above all numbers of errors. */
 #define WH_HOST_NUMBERS 128
-enum {
-    WH_HOST_NUMBERS_ABOVE = 0 /* how many errors have a larger one */
-#define WH_STATUS(number, name, text) +((number) < WH_HOST_NUMBERS ? 0 : 1)
+#define WH_STATUS(number, name, text)                                                                        \
+    typedef char wh_host_has_room_for_##name[(number) < WH_HOST_NUMBERS ? 1 : -1];
 #include "../math/status.def"
 #undef WH_STATUS
-};
-typedef char wh_host_numbers_suffice[WH_HOST_NUMBERS_ABOVE == 0 ? 1 : -1];
 
 typedef struct wh_host wh_host_t;
 typedef struct wh_controller wh_controller_t;

@@ -19,7 +19,7 @@ static void note_counted(const wh_record_t *record, char note[], size_t size) {
     if (record->checked && counted->moving > 0) {
         (void)snprintf(note + length, size - (size_t)length,
                        " C%s were looked for in %lld of %lld slices, so that their curves are not shown.",
-                       WH_RECORD_COUNTED_UNLOOKED + 1, all - counted->moving, all);
+                       &WH_RECORD_COUNTED_UNLOOKED[1], all - counted->moving, all);
     }
 }
 
