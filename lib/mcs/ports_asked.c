@@ -87,7 +87,9 @@ static int read_carrier(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t carrier = wh_mcs_index(L, 1, mcs->layout->carrier_count);
     const struct wh_ports *ports = mcs->clocks ? mcs->clocks->ports : NULL;
-    luaL_argcheck(L, ports, 1, "there is no load port");
+    if (!ports) {
+        return luaL_argerror(L, 1, "there is no load port");
+    }
     const int32_t port = ports->carriers[carrier].port;
     push_name_or_nil(L, port == WH_NONE ? NULL : mcs->layout->stations[ports->of[port].station].name,
                      port != WH_NONE);

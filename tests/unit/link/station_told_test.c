@@ -51,8 +51,8 @@ static void other_texts_are_refused(void **state) {
         "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1",
         "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=jump carrier=C1",
         "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=dock",
-        "kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=dock carrier="
-        "0123456789012345678901234567890123456789012345678901234567890123456789",
+        ("kind=port_begins station=0 slot=-1 wafer=-1 side=both at=1 us=1 step=dock carrier="
+         "0123456789012345678901234567890123456789012345678901234567890123456789"),
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; ++i) {
         wh_station_event_record_t read;

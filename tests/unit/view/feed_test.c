@@ -22,6 +22,13 @@ static char *read_all(wh_feed_t *feed, wh_feed_reader_t *reader, size_t size) {
     return text;
 }
 
+/* Reads all that is there, and keeps nothing. */
+static void pass_over(wh_feed_t *feed, wh_feed_reader_t *reader) {
+    char piece[4096];
+    while (wh_feed_read(feed, reader, piece, sizeof piece) > 0) {
+    }
+}
+
 static void assert_reads(wh_feed_t *feed, wh_feed_reader_t *reader, size_t size, const char *expected) {
     char *text = read_all(feed, reader, size);
     assert_string_equal(text, expected);
@@ -70,7 +77,7 @@ static void who_has_missed_what_counts_begins_anew(void **state) {
     wh_feed_reader_t stranger = {.next = 1000};
     for (int i = 0; i < 100; ++i) {
         wh_feed_add(&feed, "growth", large);
-        free(read_all(&feed, &quick, 64));
+        pass_over(&feed, &quick);
         assert_true(feed.bytes <= WH_FEED_BYTES);
     }
     assert_reads(&feed, &slow, 7, "id: 100\nevent: anew\ndata: {}\n\n");
@@ -98,6 +105,7 @@ static void a_message_is_read_to_its_end(void **state) {
     char rest[64] = "";
     assert_int_equal(wh_feed_read(&feed, &reader, rest, 63), 37);
     assert_string_equal(rest, "\nevent: growth\ndata: {\"first\":true}\n\n");
+    wh_feed_leave(&reader);
     wh_feed_leave(&leaver);
     wh_feed_leave(&leaver);
 }
