@@ -141,6 +141,9 @@ static void random_readers(void **state) {
         free(got);
     }
     assert_int_equal(wh_feed_read(&feed, &readers[0], piece, 0), 0);
+    for (size_t r = 0; r < READERS; ++r) {
+        wh_feed_leave(&readers[r]);
+    }
     wh_feed_close(&feed);
 }
 
