@@ -92,15 +92,7 @@ bool wh_flow_turn_away(wh_flow_state_t *state, int32_t robot, int32_t wafer, int
 /* Where it lies. */
 static void end_lying(wh_flow_state_t *state, int32_t wafer, bool is_lost) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_ENDS,
-                                   .begin_us = state->now_us,
-                                   .end_us = state->now_us,
-                                   .robot = WH_FLOW_NONE,
-                                   .wafer = wafer,
-                                   .other = WH_FLOW_NONE,
-                                   .place = at->place,
-                                   .station = state->tool->place_stations[at->place],
-                                   .step = at->step};
+    const wh_flow_event_t event = wh_flow_event_at(state, WH_FLOW_EVENT_ENDS, wafer, state->now_us);
     at->is_lost = is_lost;
     state->lost += is_lost ? 1 : 0;
     wh_flow_tell(state, &event);

@@ -240,21 +240,27 @@ void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *probl
     }
 }
 
+wh_flow_event_t wh_flow_event_at(const wh_flow_state_t *state, wh_flow_event_kind_t kind, int32_t wafer,
+                                 int64_t begin_us) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    return (wh_flow_event_t){.kind = kind,
+                             .begin_us = begin_us,
+                             .end_us = state->now_us,
+                             .robot = WH_FLOW_NONE,
+                             .wafer = wafer,
+                             .other = WH_FLOW_NONE,
+                             .place = at->place,
+                             .station = state->tool->place_stations[at->place],
+                             .step = at->step};
+}
+
 bool wh_flow_open_stay(const wh_flow_state_t *state, int32_t wafer, wh_flow_event_t *stay) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->is_over || at->step == 0 || at->place == WH_FLOW_NONE || at->taker != WH_FLOW_NONE ||
         at->done_us - at->clean_us > state->now_us) {
         return false;
     }
-    *stay = (wh_flow_event_t){.kind = WH_FLOW_EVENT_STAY,
-                              .begin_us = at->done_us,
-                              .end_us = state->now_us,
-                              .robot = WH_FLOW_NONE,
-                              .wafer = wafer,
-                              .other = WH_FLOW_NONE,
-                              .place = at->place,
-                              .station = state->tool->place_stations[at->place],
-                              .step = at->step};
+    *stay = wh_flow_event_at(state, WH_FLOW_EVENT_STAY, wafer, at->done_us);
     return true;
 }
 

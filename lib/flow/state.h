@@ -234,6 +234,10 @@ static inline bool wh_flow_is_clean_behind(const wh_flow_state_t *state, int32_t
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
 
+/* An event of a wafer in the place where it lies, from `begin_us` until now; without a robot. */
+wh_flow_event_t wh_flow_event_at(const wh_flow_state_t *state, wh_flow_event_kind_t kind, int32_t wafer,
+                                 int64_t begin_us);
+
 /* The stay up to now of a wafer that lies processed in its place, and which nobody has begun to take. False
  * if it does not, or is at its end, or in its first place. */
 bool wh_flow_open_stay(const wh_flow_state_t *state, int32_t wafer, wh_flow_event_t *stay);

@@ -1,6 +1,6 @@
 """SimPy's side of the row `flow, against SimPy`: the tool of flow_tool.lua, in which each robot carries out the lists of flow.lua.
 
-peer_simpy.py WAFERS prints the makespan. As a flow tells them, it keeps each wafer's times and each robot's and station's shares.
+peer_simpy.py WAFERS prints the makespan. It keeps the times of each wafer, and the shares of each robot and station: a flow tells the same.
 """
 
 import collections

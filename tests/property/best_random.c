@@ -90,21 +90,25 @@ static void compare(flow_case_t *flow, size_t width, sums_t *sums) {
     wh_flow_best_close(&best, &flow->tool);
 }
 
+static void try_case(bool is_narrow, sums_t *sums) {
+    flow_case_t flow;
+    open_case(&flow);
+    char *problem = wh_flow_plan_finish(&flow.plan, &flow.tool);
+    char *why = problem ? NULL : wh_flow_best_refuses(&flow.tool, &flow.plan);
+    if (!problem && !why) {
+        compare(&flow, is_narrow ? 1 + wh_test_below(5) : 2000, sums);
+    }
+    free(problem);
+    free(why);
+    flow_close(&flow);
+}
+
 static void no_schedule_is_better(void **unused) {
     (void)unused;
     sums_t sums = {0, 0, 0};
     wh_rounds_t rounds = WH_ROUNDS(60, 3000, 0.5);
     while (wh_round(&rounds)) {
-        flow_case_t flow;
-        open_case(&flow);
-        char *problem = wh_flow_plan_finish(&flow.plan, &flow.tool);
-        char *why = problem ? NULL : wh_flow_best_refuses(&flow.tool, &flow.plan);
-        if (!problem && !why) {
-            compare(&flow, 2000, &sums);
-        }
-        free(problem);
-        free(why);
-        flow_close(&flow);
+        try_case(false, &sums);
     }
     printf("%d rounds: %d schedules found, %d of them optimal; %d others\n", rounds.made, sums.found,
            sums.optimal, sums.played);
@@ -118,16 +122,7 @@ static void a_narrow_search_has_a_bound(void **unused) {
     sums_t sums = {0, 0, 0};
     wh_rounds_t rounds = WH_ROUNDS(60, 3000, 0.3);
     while (wh_round(&rounds)) {
-        flow_case_t flow;
-        open_case(&flow);
-        char *problem = wh_flow_plan_finish(&flow.plan, &flow.tool);
-        char *why = problem ? NULL : wh_flow_best_refuses(&flow.tool, &flow.plan);
-        if (!problem && !why) {
-            compare(&flow, 1 + wh_test_below(5), &sums);
-        }
-        free(problem);
-        free(why);
-        flow_close(&flow);
+        try_case(true, &sums);
     }
     assert_true(sums.found > 0);
 }
