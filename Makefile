@@ -90,7 +90,7 @@ bench: ## how fast, against peers in the same process: minutes. BENCH=step for o
 # In CI, warnings are errors in the trees that `make test` builds, so these trees are not built twice. Clang's warnings come
 # from its own logs.
 check: ## format, warnings as errors, static analysis
-	$(NEED) run test check $(if $(CI),browser)
+	$(NEED) run test check $(if $(CI),browser manual)
 	$(BUILD) $(if $(CI),B=build/float,B=build/check/float CC=gcc WERROR=1) FLOAT=1 library
 	$(BUILD) $(if $(CI),,B=build/check CC=gcc CXX=g++ WERROR=1) all tests check
 

@@ -1,13 +1,13 @@
 # Static checks; the Makefile compiles with warnings as errors. The tools that look for bugs and broken rules do not fail
 # themselves: tests/check/deviations compares their reports with lib/DEVIATIONS.md.
 
-.PHONY: check check-words check-lengths check-natives check-format check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
+.PHONY: check check-words check-lengths check-natives check-format check-shell check-lua check-scripts check-manual check-site check-rooms check-libm check-paths check-proofs check-builds check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
 CXX_FILES := $(shell find lib -name '*.[ch]pp')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.[ch]pp' -o -name '*.java')
 SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
-check: check-format check-words check-lengths check-natives check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
+check: check-format check-words check-lengths check-natives check-shell check-lua check-scripts check-manual check-site check-rooms check-libm check-paths check-proofs check-builds check-deviations
 
 check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
@@ -39,6 +39,11 @@ check-scripts:
 # groff reports errors, but does not fail.
 check-manual: $(B)/waferhand.1
 	@groff -man -Tutf8 -ww -z $< 2>&1 | awk '{ print } END { exit NR > 0 }'
+
+# Each page of the manuals is on their site, and each link leads somewhere. Only CI installs what makes the site.
+check-site:
+	@if command -v sphinx-build >/dev/null; then lib/build/site $(B)/site; \
+	else echo 'SKIPPED check-site: sphinx-build is missing: lib/build/need --install manual'; fi
 
 check-rooms:
 	@tests/check/rooms
