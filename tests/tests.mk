@@ -15,7 +15,7 @@ COLLISION_TESTS := $(basename $(shell grep -lE '^.include "(collision/|waferhand
 
 # Programs that end-to-end tests use: they are built with the tests, but do not run by themselves. The tests themselves build
 # two of them.
-TOOLS := $(filter-out %/play_segments %/pty_dialogue,$(basename $(wildcard tests/end_to_end/tools/*.c)))
+TOOLS := $(filter-out %/play_segments %/pty_dialogue %/board,$(basename $(wildcard tests/end_to_end/tools/*.c)))
 
 # Programs that measure, to be run by hand; they are built with the tests too. The ones of `make bench` are in
 # tests/bench/bench.mk.

@@ -18,6 +18,7 @@
 #include "connection.h"
 #include "layout_arguments.h"
 #include "live_sim.h"
+#include "sim_board.h"
 
 typedef struct {
     wh_layout_arguments_t layout;
@@ -25,6 +26,7 @@ typedef struct {
     const char *url, *outputs;
     bool view, json, log_time, one_sender;
     wh_live_arguments_t page;
+    wh_sim_board_arguments_t board;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -49,16 +51,27 @@ static const wh_option_table_t tables[] = {
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
     {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
+    {wh_sim_board_options, offsetof(arguments_t, board), "A board in the loop:", wh_sim_board_check},
     {0}};
+
+/* A board's line has one sender anyhow. */
+static void check(const void *filled, struct argp_state *state) {
+    const arguments_t *arguments = filled;
+    if (arguments->one_sender && wh_sim_board_is_wanted(&arguments->board)) {
+        argp_error(state, "--one-sender: goes with commands over LCM (expected no --serial and no --udp)");
+    }
+}
 
 static const wh_command_line_t command_line = {.name = "sim",
                                                .synopsis = "LAYOUT",
                                                .about =
                                                    "Simulates the layout's cell for whoever sends commands "
-                                                   "over LCM, until SIGINT or SIGTERM.\v" WH_HELP_EXIT,
+                                                   "over LCM, or for a controller's board, until SIGINT or "
+                                                   "SIGTERM.\v" WH_HELP_EXIT,
                                                .tables = tables,
                                                .operand = "layout",
-                                               .operand_variable = offsetof(arguments_t, layout.path)};
+                                               .operand_variable = offsetof(arguments_t, layout.path),
+                                               .check = check};
 
 /* Reports datagrams that were not our messages, or not of LCM. */
 static uint64_t count_garbage(const wh_sim_process_t *simulation) {
@@ -158,7 +171,8 @@ typedef struct {
 
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
                         const arguments_t *arguments) {
-    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, true);
+    const wh_status_t status =
+        wh_sim_process_open(&served->simulation, node, layout, !wh_sim_board_is_wanted(&arguments->board));
     if (status == WH_STATUS_NO_NETWORK) {
         wh_node_warn(node, "LCM takes no subscription");
         return false;
@@ -182,33 +196,53 @@ static void close_served(served_t *served) {
     wh_sim_process_close(&served->simulation);
 }
 
-static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *arguments) {
-    static served_t served;
-    wh_sim_process_t *simulation = &served.simulation;
-    if (!open_served(&served, node, layout, arguments)) {
-        close_served(&served);
-        return WH_EXIT_USAGE;
+/* Does the work that is due besides the commands. */
+static void tick(void *user) {
+    served_t *served = user;
+    wh_live_sim_tick(&served->live);
+    if (served->view.node) {
+        wh_viewer_tick(&served->view, &served->simulation.server);
     }
-    served.view.command = simulation->command;
-    simulation->one_sender = arguments->one_sender;
-    wh_node_say(node, "%s is ready, layout %016" PRIx64, layout->path,
-                simulation->server.identity.layout_hash);
+}
+
+/* Commands come over LCM. */
+static int serve_network(served_t *served, wh_node_t *node, const arguments_t *arguments) {
+    wh_sim_process_t *simulation = &served->simulation;
     int handled = 0;
+    wh_node_say(node, "%s is ready, layout %016" PRIx64, simulation->server.layout->path,
+                simulation->server.identity.layout_hash);
     while (!wh_stop_requested && handled >= 0) {
-        handled = wait_and_handle(node, &served.outputs, simulation);
+        handled = wait_and_handle(node, &served->outputs, simulation);
         wh_sim_process_tick(simulation);
-        wh_live_sim_tick(&served.live);
-        if (arguments->view) {
-            wh_viewer_tick(&served.view, &simulation->server);
-        }
+        tick(served);
     }
     say_counters(simulation);
-    const bool printed = !arguments->json || print_counters(simulation);
-    close_served(&served);
-    if (!printed) {
+    if (arguments->json && !print_counters(simulation)) {
         return WH_EXIT_USAGE;
     }
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
+}
+
+/* The file is read after each slice. */
+static void tick_board(void *user) {
+    served_t *served = user;
+    update_valves(&served->outputs, &served->simulation);
+    tick(served);
+}
+
+static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *arguments) {
+    static served_t served;
+    const wh_sim_board_ticks_t ticks = {tick_board, &served};
+    int status = WH_EXIT_USAGE;
+    if (open_served(&served, node, layout, arguments)) {
+        served.view.command = served.simulation.command;
+        served.simulation.one_sender = arguments->one_sender;
+        status = wh_sim_board_is_wanted(&arguments->board)
+                     ? wh_sim_board_serve(&arguments->board, &served.simulation, &ticks, arguments->json)
+                     : serve_network(&served, node, arguments);
+    }
+    close_served(&served);
+    return status;
 }
 
 static bool is_apart(const arguments_t *arguments) {
@@ -246,6 +280,7 @@ int wh_app_sim(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = run(&arguments);
+    wh_option_list_free(&arguments.board.allowed);
     wh_layout_arguments_free(&arguments.layout);
     return status;
 }

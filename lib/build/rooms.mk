@@ -3,6 +3,6 @@
 LIBRARY_ROOMS := math grasp batch motion cell align sim
 # It uses libccd, and exists in double only.
 COLLISION_ROOM := collision
-HOST_ROOMS := text flow script schedule layout bodies reading record trial mcs survey wire link log host view study estimate report print app
+HOST_ROOMS := text flow script schedule layout bodies reading record trial mcs survey wire link log host loop view study estimate report print app
 # Java, beside them: it uses the messages alone.
 SPY_ROOM := spy

@@ -4,11 +4,12 @@
 readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -DWH_NO_CONTRACTION -Wall -Wextra -Ilib -Itests'
 readonly M7='-mthumb -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard'
 readonly M0='-mthumb -mcpu=cortex-m0plus'
+readonly M3='-mthumb -mcpu=cortex-m3'
 readonly M4='-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'
 
 # Sets COMPILER, FLAGS, LINK, RUN and FLOAT for m7 (Cortex-M7, double), m4f (Cortex-M4F, float), m0 (Cortex-M0+, float in
 # software, on an M4 that knows the same instructions), m4 (the same machine, double in software, with an addition of our own:
-# tests/target/soft_double.c says why), rv64, aarch64 and powerpc (big-endian, 32 bits).
+# tests/target/soft_double.c says why), m3 (Cortex-M3), rv64, aarch64 and powerpc (big-endian, 32 bits).
 target() {
     FLOAT='' LINK='' RUN=()
     case $1 in
@@ -22,6 +23,11 @@ target() {
         [[ $1 != m4 ]] || LINK="tests/target/soft_double.c -Wl,--allow-multiple-definition $LINK"
         RUN=(qemu-system-arm -M "$([[ $1 == m7 ]] && echo mps2-an500 || echo mps2-an386)" -nographic -monitor none
             -serial none -semihosting-config "enable=on,target=native" -kernel)
+        ;;
+    m3) # for tests/target/board.c, whose line is the UART
+        COMPILER=arm-none-eabi-gcc FLAGS="-O2 $M3"
+        LINK='--specs=rdimon.specs -T tests/target/lm3s.ld tests/target/startup.c'
+        RUN=(qemu-system-arm -M lm3s6965evb -nographic -monitor none -semihosting-config "enable=on,target=native" -kernel)
         ;;
     rv64)
         COMPILER=riscv64-unknown-elf-gcc
