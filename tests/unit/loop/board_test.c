@@ -121,6 +121,7 @@ static void add_frame(uint32_t number) {
         line[line_size + place] = (uint8_t)(line[line_size + place] ^ 1U << wh_test_below(8));
     } else if (loses) {
         memmove(line + line_size + place, line + line_size + place + 1, size - place - 1);
+        line[line_size + size - 1] = 0;
     }
     line_size += size - (loses ? 1 : 0);
 }
