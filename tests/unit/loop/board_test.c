@@ -99,9 +99,10 @@ static void add_noise(void) {
     }
 }
 
-/* A frame that loses its last byte, and that byte is a frame's begin, is whole again with the next one's. */
+/* A byte before or behind a frame may stand in for one that it loses: then it is whole. */
 static bool may_lose(uint32_t number, size_t size) {
-    return sent[number][size - 1] != WH_BOARD_BEGIN;
+    return sent[number][size - 1] != WH_BOARD_BEGIN &&
+           (line_size == 0 || line[line_size - 1] != WH_BOARD_BEGIN);
 }
 
 /* One in six has noise before it, one a flipped bit, one lacks a byte. */
