@@ -27,6 +27,10 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
     {"schedule", 0, "FILE", "Write the schedule that a flow played, as waferhand schedule reads it",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.schedule_path)},
+    {"brief", 0, NULL,
+     "Print sums, complaints and the last lines alone, and keep no row of a command: memory stays flat "
+     "however long the run",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, run.sections.brief)},
     {"rate", 0, "FACTOR",
      "With --page: let simulated time pass so much faster than the wall clock (default 1)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
@@ -70,6 +74,41 @@ static void check_counted(const arguments_t *arguments, struct argp_state *state
     }
 }
 
+/* An option whose output has rows of commands; null: none is given. */
+static const char *option_of_rows(const arguments_t *arguments) {
+    const wh_run_arguments_t *run = &arguments->run;
+    const struct {
+        bool is_given;
+        const char *option;
+    } options_of_rows[] = {{run->json, "--json"},
+                           {run->files.page, "--report"},
+                           {run->files.scene, "--gltf"},
+                           {run->files.document, "--data"},
+                           {run->files.plots, "--svg"},
+                           {run->sections.gantt, "--gantt"},
+                           {run->sections.cycle, "--cycle"},
+                           {run->segments_path, "--segments"},
+                           {run->history_path, "--history"},
+                           {run->schedule_path, "--schedule"},
+                           {arguments->lcm, "--lcm"},
+                           {arguments->record.slices, "--record"},
+                           {arguments->record.all, "--record-all"},
+                           {arguments->page.address, "--page"}};
+    for (size_t i = 0; i < sizeof options_of_rows / sizeof options_of_rows[0]; ++i) {
+        if (options_of_rows[i].is_given) {
+            return options_of_rows[i].option;
+        }
+    }
+    return NULL;
+}
+
+static void check_brief(const arguments_t *arguments, struct argp_state *state) {
+    const char *other = option_of_rows(arguments);
+    if (arguments->run.sections.brief && other) {
+        argp_error(state, "--brief does not go with %s, which tells of each command", other);
+    }
+}
+
 static void check_page(const arguments_t *arguments, struct argp_state *state) {
     if (arguments->rate > 0 && !arguments->page.address) {
         argp_error(state, "--rate: %g (goes with --page: without one nobody waits for the clock)",
@@ -87,6 +126,7 @@ static void check_run_arguments(const void *given, struct argp_state *state) {
     }
     check_errors(arguments, state);
     check_counted(arguments, state);
+    check_brief(arguments, state);
     check_page(arguments, state);
     if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
         argp_error(state, "--watch goes neither with --lcm nor with a recording");

@@ -483,7 +483,11 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     }
     arguments->run.listener = wh_live_listener(arguments->live, &arguments->run.listener);
     arguments->run.keep_segments = arguments->segments_path != NULL;
-    arguments->run.keep_ways = arguments->schedule_path || wh_run_files_wanted(&arguments->files);
+    arguments->run.drops_rows = arguments->sections.brief;
+    arguments->run.keeps = arguments->sections.brief ? WH_FLOW_SUMS
+                           : arguments->schedule_path || wh_run_files_wanted(&arguments->files)
+                               ? WH_FLOW_WAYS
+                               : WH_FLOW_VISITS;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
     int status = hand_on(arguments, &run, &signals, outcome);

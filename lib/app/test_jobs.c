@@ -50,14 +50,6 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
-static uint64_t count_errors(const wh_record_t *record) {
-    uint64_t errors = 0;
-    for (size_t i = 0; i < record->command_count; ++i) {
-        errors += record->commands[i].error != WH_OK ? 1 : 0;
-    }
-    return errors;
-}
-
 static void judge_script(const wh_script_run_t *run, wh_script_run_outcome_t outcome,
                          const wh_test_job_t *job, bool needs_expectations, told_t *told) {
     const wh_record_t *record = &run->record;
@@ -67,10 +59,10 @@ static void judge_script(const wh_script_run_t *run, wh_script_run_outcome_t out
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
         wh_record_reason(record, told->reason, sizeof told->reason);
-    } else if (wh_record_kept_still(record) && record->expectation_count == 0) {
+    } else if (wh_record_kept_still(record) && wh_record_expectations(record) == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "%s", WH_RECORD_IDLE);
-    } else if (needs_expectations && record->expectation_count == 0) {
+    } else if (needs_expectations && wh_record_expectations(record) == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it expects nothing (--require-expectations)");
     }
@@ -91,11 +83,13 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     memset(&told, 0, sizeof told);
     options.script = job->path;
     options.limits.print_to = stdout;
+    options.drops_rows = true;
+    options.keeps = WH_FLOW_PATH;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &options);
     judge_script(&run, outcome, job, crew->options->needs_expectations, &told);
     told.hash = run.record.hash;
-    told.expectations = run.record.expectation_count;
-    told.errors = count_errors(&run.record);
+    told.expectations = wh_record_expectations(&run.record);
+    told.errors = wh_record_errors(&run.record);
     told.simulated_s = run.record.simulated_s;
     told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
     tell_never_came(&run.record, &told);

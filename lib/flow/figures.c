@@ -38,7 +38,7 @@ struct wh_flow_measure {
     int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
     wh_flow_visit_t *open; /* by wafer: the transfer that runs */
     wh_flow_log_t log;
-    bool keeps_ways;
+    wh_flow_keep_t keeps;
 };
 
 typedef wh_flow_measure_t measure_t;
@@ -201,7 +201,7 @@ static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event)
 
 static void note_way(measure_t *measure, const wh_flow_event_t *event) {
     wh_flow_figures_t *figures = measure->figures;
-    if (measure->keeps_ways && event->end_us > event->begin_us && event->from != WH_FLOW_NONE) {
+    if (measure->keeps == WH_FLOW_WAYS && event->end_us > event->begin_us && event->from != WH_FLOW_NONE) {
         figures->ways =
             wh_array_grow(figures->ways, figures->way_count, &figures->way_capacity, sizeof *figures->ways);
         figures->ways[figures->way_count++] =
@@ -278,7 +278,6 @@ static bool is_real_door(const wh_flow_tool_t *tool, const wh_flow_event_t *even
 static void note_event(measure_t *measure, const wh_flow_event_t *event) {
     const bool is_doing = event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
                           event->kind == WH_FLOW_EVENT_DOWN || is_real_door(measure->figures->tool, event);
-    wh_flow_log_add(&measure->log, event);
     if (event->kind == WH_FLOW_EVENT_PICK) {
         measure->open[event->wafer].picked_us = event->end_us;
     } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
@@ -305,6 +304,9 @@ static void hear(void *context, const wh_flow_state_t *state, const wh_flow_even
         go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
     } else if (event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP) {
         hear_placing(measure, state, event);
+    }
+    if (measure->keeps != WH_FLOW_SUMS) {
+        wh_flow_log_add(&measure->log, event);
     }
     if (measure->open) {
         note_event(measure, event);
@@ -344,8 +346,7 @@ static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) 
     }
     for (size_t s = 0; s < state->tool->station_count; ++s) {
         const wh_flow_station_state_t *station = &state->stations[s];
-        if (station->clean_us == WH_FLOW_NEVER && station->pump_us == WH_FLOW_NEVER &&
-            station->down_us == WH_FLOW_NEVER) {
+        if (!station->is_aside) {
             continue;
         }
         const wh_flow_station_t *of = &state->tool->stations[s];
@@ -445,11 +446,11 @@ wh_flow_measure_t *wh_flow_measure_open(const wh_flow_tool_t *tool, const wh_flo
                                         wh_flow_figures_t *figures) {
     measure_t *measure = wh_array_new(1, sizeof *measure);
     *measure = (measure_t){.figures = figures,
-                           .keeps_ways = keeps == WH_FLOW_WAYS,
+                           .keeps = keeps,
                            .places = wh_array_new(tool->place_count, sizeof *measure->places),
                            .asides = wh_array_new(tool->place_count, sizeof *measure->asides)};
     open_figures(figures, tool, plan);
-    if (keeps != WH_FLOW_SUMS) {
+    if (keeps == WH_FLOW_VISITS || keeps == WH_FLOW_WAYS) {
         keep_visits(measure, figures, plan->wafer_count);
     }
     const wh_flow_listener_t listener = {measure, hear, advance, end};

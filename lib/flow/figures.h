@@ -79,7 +79,7 @@ typedef struct {
     size_t doing_count, doing_capacity;
     wh_flow_way_t *ways; /* none if not asked for */
     size_t way_count, way_capacity;
-    wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
+    wh_flow_part_t *parts; /* of the critical path, the longest first; none with the sums alone */
     size_t part_count;
     wh_flow_gain_t *gains; /* by robot, then by station; null if not asked for */
     uint64_t hash;         /* of all that was told, in its order */
@@ -106,9 +106,13 @@ bool wh_flow_has_moved(const wh_flow_t *flow);
 /* True if it was cut: wafers are not at their ends then. */
 bool wh_flow_is_cut(const wh_flow_t *flow);
 
-/* More than the sums may be kept: visits, of about 100 bytes for each placing; or ways as well, of about 70
- * more, which schedules alone need. */
-typedef enum { WH_FLOW_SUMS, WH_FLOW_VISITS, WH_FLOW_WAYS } wh_flow_keep_t;
+/* Kept beside the sums: */
+typedef enum {
+    WH_FLOW_VISITS, /* about 100 bytes for each placing; and the critical path, as below */
+    WH_FLOW_WAYS,   /* likewise, and about 70 bytes for each way, which schedules and pages alone need */
+    WH_FLOW_PATH,   /* the critical path alone; while the flow goes on, about 500 bytes for each placing */
+    WH_FLOW_SUMS    /* nothing */
+} wh_flow_keep_t;
 
 /* wh_flow_play, with figures. Close them in any case. */
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,

@@ -456,15 +456,32 @@ static int by_begin(const void *a, const void *b) {
                                             : one > other;
 }
 
+/* The log is in the order of ends: few begin far from where they stand. If many do, they are sorted as any
+ * list is. */
+static void sort_by_begins(begin_t *begins, size_t count) {
+    size_t steps = 0;
+    for (size_t i = 1; i < count && steps < 64 * count; ++i) {
+        const begin_t one = begins[i];
+        size_t at = i;
+        while (at > 0 && by_begin(&one, &begins[at - 1]) < 0) {
+            begins[at] = begins[at - 1];
+            --at;
+        }
+        begins[at] = one;
+        steps += i - at;
+    }
+    if (count > 0 && steps >= 64 * count) {
+        qsort(begins, count, sizeof *begins, by_begin);
+    }
+}
+
 static void open_path(path_t *path) {
     const wh_flow_tool_t *tool = path->tool;
     path->begins = wh_array_new(path->log->count, sizeof *path->begins);
     for (size_t i = 0; i < path->log->count; ++i) {
         path->begins[i].event = &path->log->events[i];
     }
-    if (path->log->count > 0) {
-        qsort(path->begins, path->log->count, sizeof *path->begins, by_begin);
-    }
+    sort_by_begins(path->begins, path->log->count);
     for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
         const int64_t close_us = tool->doors[i].close_us;
         path->longest_shutting_us =

@@ -36,24 +36,6 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     memset(plan, 0, sizeof *plan);
 }
 
-static const wh_flow_route_t *route_of(const wh_flow_plan_t *plan, int32_t wafer) {
-    return &plan->routes[plan->lots[plan->wafers[wafer].lot].route];
-}
-
-int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer) {
-    return (int32_t)route_of(plan, wafer)->step_count - (plan->wafers[wafer].goes_back ? 0 : 1);
-}
-
-const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
-    const wh_flow_route_t *route = route_of(plan, wafer);
-    return (size_t)step < route->step_count ? &route->steps[step]
-                                            : &plan->backs[plan->wafers[wafer].back_station];
-}
-
-int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
-    return step == wh_flow_last_step(plan, wafer) ? plan->wafers[wafer].back : WH_FLOW_NONE;
-}
-
 bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot) {
     for (size_t i = 0; i < step->station_count; ++i) {
         if (tool->serves[wh_flow_of(tool, robot, step->stations[i])]) {
@@ -127,7 +109,7 @@ static char *check_route(const wh_flow_plan_t *plan, const wh_flow_route_t *rout
 /* The wafer goes back by a step of its own, unless its route ends there alone. */
 static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     wh_flow_wafer_t *wafer = &plan->wafers[w];
-    const wh_flow_route_t *route = route_of(plan, w);
+    const wh_flow_route_t *route = wh_flow_route_of(plan, w);
     const wh_flow_step_t *last = &route->steps[route->step_count - 1];
     if (wafer->back == WH_FLOW_NONE) {
         return;
@@ -151,7 +133,7 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
         return problem_of(
             "route %s: in its last step, %d, wafers are aligned or turned over (expected one more step "
             "where they end, or back in the lot)",
-            route_of(plan, w)->name, (int)k);
+            wh_flow_route_of(plan, w)->name, (int)k);
     }
     for (size_t i = 0; i < last->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[last->stations[i]];
@@ -160,7 +142,7 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
             return problem_of(
                 "route %s: its last step, %d, is %s, which processes for %.6g s (expected one more "
                 "step where wafers end, back in the lot, or process = 0 in this step)",
-                route_of(plan, w)->name, (int)k, station->name, (double)process_us / 1e6);
+                wh_flow_route_of(plan, w)->name, (int)k, station->name, (double)process_us / 1e6);
         }
     }
     return NULL;
@@ -168,7 +150,7 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
 
 /* Each wafer can leave its first place, and can get back. */
 static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
-    const wh_flow_route_t *route = route_of(plan, w);
+    const wh_flow_route_t *route = wh_flow_route_of(plan, w);
     const wh_flow_step_t *last = &route->steps[route->step_count - 1];
     char *problem =
         check_way(plan, tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home]);

@@ -132,14 +132,26 @@ static inline int32_t wh_flow_priority(const wh_flow_plan_t *plan, int32_t wafer
     return plan->lots[plan->wafers[wafer].lot].priority;
 }
 
+static inline const wh_flow_route_t *wh_flow_route_of(const wh_flow_plan_t *plan, int32_t wafer) {
+    return &plan->routes[plan->lots[plan->wafers[wafer].lot].route];
+}
+
 /* The number of the wafer's last step. */
-int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer);
+static inline int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer) {
+    return (int32_t)wh_flow_route_of(plan, wafer)->step_count - (plan->wafers[wafer].goes_back ? 0 : 1);
+}
 
 /* A step of the wafer's route, or that of its way back. Step 0 has no stations. */
-const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step);
+static inline const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
+    const wh_flow_route_t *route = wh_flow_route_of(plan, wafer);
+    return (size_t)step < route->step_count ? &route->steps[step]
+                                            : &plan->backs[plan->wafers[wafer].back_station];
+}
 
 /* The place where the wafer must end, if this step of its route is the last one and `back` is given; else
  * WH_FLOW_NONE. */
-int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step);
+static inline int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
+    return step == wh_flow_last_step(plan, wafer) ? plan->wafers[wafer].back : WH_FLOW_NONE;
+}
 
 #endif

@@ -42,6 +42,9 @@ typedef struct {
     int32_t accesses; /* picks, places and swaps that have ended */
     int32_t turned;   /* turns of its own list that have begun */
     bool has_due;     /* one of its places must be cleaned, and is not yet */
+    bool is_aside;    /* as the last instant ended it was cleaned, pumped or had failed */
+    int64_t
+        next_us; /* as the last instant ended: when something of it ends next; of a failure for ever, never */
     wh_flow_station_real_t real;
 } wh_flow_station_state_t;
 

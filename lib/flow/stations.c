@@ -181,6 +181,9 @@ static void end_doings(wh_flow_state_t *state, int32_t number) {
 void wh_flow_stations_end(wh_flow_state_t *state) {
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         wh_flow_station_state_t *station = &state->stations[i];
+        if (station->next_us > state->now_us) {
+            continue;
+        }
         if (!state->tool->stations[i].is_real) {
             end_doings(state, i);
         }
@@ -348,31 +351,48 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
 
 /* --------------------------------------------------------------------------------------------------- next */
 
-static int64_t sooner(const wh_flow_state_t *state, int64_t best_us, int64_t us) {
-    return us > state->now_us && us < WH_FLOW_FOR_EVER && us < best_us ? us : best_us;
+/* `best_us` is at most WH_FLOW_FOR_EVER. */
+static int64_t sooner(int64_t now_us, int64_t best_us, int64_t us) {
+    return us < best_us && us > now_us ? us : best_us;
+}
+
+static int64_t or_never(int64_t us) {
+    return us < WH_FLOW_FOR_EVER ? us : WH_FLOW_NEVER;
+}
+
+/* When something of the station ends next, WH_FLOW_FOR_EVER: nothing does. */
+static int64_t station_next(const wh_flow_state_t *state, size_t number) {
+    wh_flow_station_state_t *station = &state->stations[number];
+    const int64_t now_us = state->now_us;
+    int64_t next_us = sooner(now_us, WH_FLOW_FOR_EVER, station->shut_us);
+    next_us = sooner(now_us, next_us, station->down_us);
+    if (!state->tool->stations[number].is_real) {
+        next_us = sooner(now_us, next_us, station->done_us);
+        next_us = sooner(now_us, next_us, station->clean_us);
+        next_us = sooner(now_us, next_us, station->pump_us);
+    }
+    station->next_us = next_us;
+    station->is_aside = station->clean_us != WH_FLOW_NEVER || station->pump_us != WH_FLOW_NEVER ||
+                        station->down_us != WH_FLOW_NEVER;
+    return next_us;
 }
 
 int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
     const wh_flow_plan_t *plan = state->plan;
-    int64_t next_us = WH_FLOW_NEVER;
-    *idle_us = WH_FLOW_NEVER;
+    const int64_t now_us = state->now_us;
+    int64_t next_us = WH_FLOW_FOR_EVER, idle = WH_FLOW_FOR_EVER;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
-        const wh_flow_station_state_t *station = &state->stations[i];
-        next_us = sooner(state, next_us, station->shut_us);
-        next_us = sooner(state, next_us, station->down_us);
-        if (!state->tool->stations[i].is_real) {
-            next_us = sooner(state, next_us, station->done_us);
-            next_us = sooner(state, next_us, station->clean_us);
-            next_us = sooner(state, next_us, station->pump_us);
-            *idle_us = sooner(state, *idle_us, station->idle_us);
-        }
+        const int64_t its_us = station_next(state, i);
+        next_us = its_us < next_us ? its_us : next_us;
+        idle = state->tool->stations[i].is_real ? idle : sooner(now_us, idle, state->stations[i].idle_us);
     }
-    next_us = sooner(state, next_us, state->next.start_us);
+    *idle_us = or_never(idle);
+    next_us = sooner(now_us, next_us, state->next.start_us);
     if (state->next.lot < plan->lot_count) {
-        next_us = sooner(state, next_us, plan->lots[state->next.lot].arrives_us);
+        next_us = sooner(now_us, next_us, plan->lots[state->next.lot].arrives_us);
     }
     if (state->next.down < plan->down_count) {
-        next_us = sooner(state, next_us, plan->downs[state->next.down].at_us);
+        next_us = sooner(now_us, next_us, plan->downs[state->next.down].at_us);
     }
-    return next_us;
+    return or_never(next_us);
 }

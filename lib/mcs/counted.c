@@ -54,9 +54,81 @@ static uint32_t moving_axes(const wh_mcs_t *mcs) {
     return axes;
 }
 
+/* The track whose segment moves the axis; null: none does. */
+static const wh_track_t *track_of(const wh_mcs_t *mcs, size_t axis) {
+    const wh_track_t *found = mcs->lanes ? NULL : &mcs->track;
+    for (size_t i = 0; mcs->lanes && i < mcs->lanes->count; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        found = lane->is_busy && (lane->axes >> axis & 1U) != 0 ? &lane->track : found;
+    }
+    return found;
+}
+
+static void jump(wh_track_t *track, int64_t slices) {
+    track->segment_slice += slices - 1;
+    track->slice += slices - 1;
+    (void)wh_track_next(track, 0);
+}
+
+/* Axes that stand move by rounding alone, rad and mm. */
+#define STILL 1e-9
+
+/* True if these axes stand to the segment's end. */
+static bool stand_still(const wh_track_t *track, uint32_t axes, int64_t slices) {
+    wh_track_t there = *track;
+    bool stand = true;
+    jump(&there, slices);
+    for (size_t axis = 0; axes >> axis != 0; ++axis) {
+        stand =
+            stand && ((axes >> axis & 1U) == 0 || wh_real_abs(there.axes[axis] - track->axes[axis]) < STILL);
+    }
+    return stand;
+}
+
+/* How far the axis is after so many slices of its segment. */
+static wh_real_t way_after(const wh_track_t *track, size_t axis, int64_t slices) {
+    wh_track_t there = *track;
+    jump(&there, slices);
+    return wh_real_abs(there.axes[axis] - track->axes[axis]);
+}
+
+/* A straight segment goes one way: the farther, the later. */
+static int64_t slices_within(const void *user, size_t axis, wh_real_t way) {
+    const wh_track_t *track = track_of(user, axis);
+    const bool is_straight =
+        track && (track->segment.kind == WH_SEGMENT_LINE || track->segment.kind == WH_SEGMENT_AXES);
+    const int64_t all = is_straight ? track->segment_slices - track->segment_slice - 1 : 0;
+    int64_t low = 0, high = all;
+    if (all < FEW || !stand_still(track, wh_quiet_still(track), all)) {
+        return 0;
+    }
+    if (way_after(track, axis, all) <= way) {
+        return all;
+    }
+    while (high - low > 1) {
+        const int64_t middle = low + (high - low) / 2;
+        if (way_after(track, axis, middle) <= way) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static uint32_t still_axes(const wh_mcs_t *mcs) {
+    uint32_t axes = mcs->lanes ? 0 : wh_quiet_still(&mcs->track);
+    for (size_t i = 0; mcs->lanes && i < mcs->lanes->count; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        axes |= lane->is_busy ? wh_quiet_still(&lane->track) & lane->axes : 0;
+    }
+    return axes;
+}
+
 static int64_t until_something_meets(const wh_mcs_t *mcs) {
-    return wh_quiet_slices(&mcs->local.counted->quiet, &mcs->local.simulator, &mcs->command,
-                           moving_axes(mcs));
+    const wh_quiet_stroke_t stroke = {mcs, still_axes(mcs), slices_within};
+    return wh_quiet_slices(&mcs->local.counted->quiet, &mcs->local.simulator, &mcs->command, moving_axes(mcs),
+                           &stroke);
 }
 
 /* The slices that each kind of decision allows; what is cheap to ask comes first. */
@@ -73,12 +145,6 @@ static int64_t count_left_out(const wh_mcs_t *mcs, int64_t most) {
 }
 
 /* ------------------------------------------------------------------------------------------- leaving out */
-
-static void jump(wh_track_t *track, int64_t slices) {
-    track->segment_slice += slices - 1;
-    track->slice += slices - 1;
-    (void)wh_track_next(track, 0);
-}
 
 static void jump_all(wh_mcs_t *mcs, int64_t slices) {
     if (!mcs->lanes) {

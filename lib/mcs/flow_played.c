@@ -111,8 +111,7 @@ static int begin_flow(lua_State *L) {
     if (played->flow->is_lateness_told && mcs->clocks) {
         mcs->clocks->state->tells_late = true;
     }
-    played->measure = wh_flow_measure_open(played->tool, &played->flow->plan,
-                                           mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
+    played->measure = wh_flow_measure_open(played->tool, &played->flow->plan, mcs->wanted.keeps,
                                            &played->outside, &played->flow->figures);
     played->engine = wh_flow_measure_engine(played->measure);
     shut_doors(played);

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../flow/textbook.h"
 #include "../flow/waits.h"
@@ -111,8 +112,26 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
     }
 }
 
+/* A field that the result has not, `path` by name: the critical path was not kept, and is not empty. */
+static int refuse_path(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "path") == 0) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, "path: the critical path is not kept with --brief");
+    }
+    return 0;
+}
+
+/* The result on top of the stack raises an error where `path` is read. */
+static void set_path_apart(lua_State *L, wh_mcs_t *mcs) {
+    lua_createtable(L, 0, 1);
+    lua_pushlightuserdata(L, mcs);
+    lua_pushcclosure(L, refuse_path, 1);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+}
+
 /* The word's result. */
-static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
+static void push_result(lua_State *L, wh_mcs_t *mcs, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_result_t *result = &figures->result;
     lua_createtable(L, 0, 16);
@@ -140,8 +159,12 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     lua_setfield(L, -2, "stays");
     push_waits(L, figures);
     lua_setfield(L, -2, "waits");
-    push_path(L, figures);
-    lua_setfield(L, -2, "path");
+    if (mcs->wanted.keeps == WH_FLOW_SUMS) {
+        set_path_apart(L, mcs);
+    } else {
+        push_path(L, figures);
+        lua_setfield(L, -2, "path");
+    }
     push_all_shares(L, figures);
 }
 
@@ -228,7 +251,7 @@ int wh_flow_return_word(lua_State *L, wh_mcs_t *mcs, bool has_failed) {
     if (has_failed) {
         return lua_error(L);
     }
-    push_result(L, &flow->figures);
+    push_result(L, mcs, &flow->figures);
     return 1;
 }
 
@@ -239,8 +262,7 @@ static int play_flow(lua_State *L) {
     wh_flow_t *flow = wh_flow_read_word(L, mcs, tool);
     flow->plan.ends_steady = mcs->wanted.until_steady;
     wh_flow_own_open(L, tool, &flow->plan);
-    wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
-                    &flow->figures);
+    wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps, &flow->figures);
     const bool has_failed = wh_flow_own_close(L, &flow->plan);
     flow->plan.ends_steady = false;
     if (flow->has_gains && !has_failed) {

@@ -328,7 +328,7 @@ static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
 /* If no state has come, a script's commands and expectations saw only the layout: they prove nothing. */
 static void judge_heard(wh_mcs_t *mcs) {
     const wh_record_t *record = mcs->recorder.record;
-    const bool asked = record->expectation_count + record->command_count > 0;
+    const bool asked = wh_record_expectations(record) + wh_record_commands(record) > 0;
     const wh_mcs_partners_t *partners = &mcs->wanted.partners;
     if (asked && partners->lossy && !partners->lossy->is_heard(partners->user)) {
         add_expectation(mcs, "a simulator that answers; no state has come from one", false);

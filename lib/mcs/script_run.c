@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../record/dropped.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
 
@@ -119,7 +120,10 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     }
     run->mcs.wanted.is_file = true;
     run->mcs.wanted.keeps_segments = options->keep_segments;
-    run->mcs.wanted.keeps_ways = options->keep_ways;
+    run->mcs.wanted.keeps = options->keeps;
+    if (options->drops_rows) {
+        wh_dropped_want(&run->record);
+    }
     run->mcs.wanted.limits_missed = options->limits_missed;
     run->mcs.wanted.most_missed = options->most_missed;
     run->mcs.wanted.partners = options->partners;

@@ -12,8 +12,9 @@ typedef struct {
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
     wh_mcs_listener_t listener; /* all null: no listener */
     bool keep_segments;         /* run->mcs.kept.segments then holds the played segments */
-    bool keep_ways;     /* run->record.flow then holds robots' ways, as wh_schedule_write needs them */
-    bool limits_missed; /* the run fails if the simulator misses more slices than `most_missed` */
+    bool drops_rows;            /* of what is over, see record/dropped.h */
+    wh_flow_keep_t keeps;       /* of a flow, in run->record.flow; wh_schedule_write needs WH_FLOW_WAYS */
+    bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     bool unread_parameters;  /* are accepted: a trial may end before it reads them */
     const wh_trial_t *trial; /* a study's trial: the cell has its errors, if layout or script lists

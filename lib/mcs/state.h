@@ -187,7 +187,7 @@ typedef struct {
     bool refuses_unread;     /* the cell is not connected while a parameter is unread */
     bool is_file;            /* `script` is a file that is run, not a layout */
     bool keeps_segments;     /* collect the played segments, for --segments */
-    bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
+    wh_flow_keep_t keeps;    /* of a flow beside its sums */
     bool without_collisions; /* no collision check, whatever the layout says */
     bool until_steady;       /* a flow by times alone ends as soon as it is steady */
     wh_mcs_count_t counts;

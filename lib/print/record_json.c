@@ -309,9 +309,10 @@ static json_t *counted_of(const wh_record_t *record) {
     const wh_counted_record_t *counted = &record->counted;
     const bool is_unlooked = record->checked && counted->moving > 0;
     json_t *object =
-        wh_json_set(json_object(), "played %lld left_out %lld moving %lld not_looked_for %s",
+        wh_json_set(json_object(), "played %lld left_out %lld moving %lld commands %lld not_looked_for %s",
                     (json_int_t)(record->slices - counted->left_out), (json_int_t)counted->left_out,
-                    (json_int_t)counted->moving, is_unlooked ? WH_RECORD_COUNTED_UNLOOKED : NULL);
+                    (json_int_t)counted->moving, (json_int_t)counted->commands,
+                    is_unlooked ? WH_RECORD_COUNTED_UNLOOKED : NULL);
     return counted->is_verified ? wh_json_set(object, "stretches %lld verified %lld",
                                               (json_int_t)counted->stretches, (json_int_t)counted->verified)
                                 : object;

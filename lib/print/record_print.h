@@ -18,7 +18,8 @@
  * were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s, wall_s,
  * hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
  *   counted:      (only of counted time) { played, left_out (slices), moving (those left out in which
- *                 something moved), not_looked_for (in these, in words; null: nothing); with --verify
+ *                 something moved), commands (of which slices were left out), not_looked_for (in
+ *                 these slices, in words; null: nothing); with --verify
  *                 stretches (that could be left out), verified (those of them that were played) }
  *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
  *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
@@ -108,6 +109,8 @@ typedef struct {
     bool cycle;
     /* How near the axes come to the ends of their travel at each station. */
     bool margins;
+    /* Sums alone: no rows of commands, stations and wafers. The record may have dropped them. */
+    bool brief;
 } wh_record_sections_t;
 
 /* With these sections; null: with none. 0, or -1 if writing failed (then what is printed may be incomplete).

@@ -105,17 +105,19 @@ static bool is_miss(const wh_event_t *event) {
     return !is_brought && ((others >> (unsigned)event->kind & 1U) != 0 || wh_print_is_complaint(event->kind));
 }
 
-static void print_complaints(const wh_printer_t *printer) {
+/* A brief run has complaints alone: all of them are there. */
+static void print_complaints(const wh_printer_t *printer, bool is_brief) {
     const wh_record_t *record = printer->record;
     wh_grid_t *grid = wh_grid_new(printer->style, 1, "at s{3,6};what;wafer;gripper");
     wh_print_measured_columns(printer, grid);
     wh_grid_columns(grid, "why");
     for (size_t i = 0; i < record->event_count; ++i) {
-        if (is_miss(&record->events[i].event)) {
+        const wh_event_t *event = &record->events[i].event;
+        if (is_brief ? wh_record_is_complaint(event->kind) : is_miss(event)) {
             add_event(printer, grid, &record->events[i]);
         }
     }
-    wh_print_titled(printer, "Misses and complaints", grid);
+    wh_print_titled(printer, is_brief ? "Complaints" : "Misses and complaints", grid);
 }
 
 /* ------------------------------------------------------------------------------------------- expectations */
@@ -148,7 +150,7 @@ static void print_unmet(const wh_printer_t *printer) {
 }
 
 static void print_expectations(const wh_printer_t *printer) {
-    const size_t count = printer->record->expectation_count;
+    const size_t count = wh_record_expectations(printer->record);
     const size_t unmet = count_unmet(printer->record);
     if (count == 0) {
         return;
@@ -179,7 +181,7 @@ static void print_times(const wh_printer_t *printer) {
         return;
     }
     fputc('\n', printer->out);
-    wh_print_counted(printer->out, (int64_t)record->command_count, "command", "commands");
+    wh_print_counted(printer->out, (int64_t)wh_record_commands(record), "command", "commands");
     fprintf(printer->out, ", %.3f s simulated in ", record->simulated_s);
     wh_print_counted(printer->out, record->slices, "slice", "slices");
     if (record->missed > 0) {
@@ -213,6 +215,9 @@ static void print_counted(const wh_printer_t *printer) {
     fprintf(printer->out, "played %s of ", wh_print_count(count, record->slices - counted->left_out));
     wh_print_counted(printer->out, record->slices, "slice", "slices");
     fputs(": nothing was decided in the others\n", printer->out);
+    fprintf(printer->out, "counted %s of ", wh_print_count(count, (int64_t)counted->commands));
+    wh_print_counted(printer->out, (int64_t)wh_record_commands(record), "command", "commands");
+    fputs(", of which slices were left out: the others were played whole\n", printer->out);
     if (counted->is_verified) {
         fprintf(printer->out, "verified %s of ", wh_print_count(count, (int64_t)counted->verified));
         wh_print_counted(printer->out, (int64_t)counted->stretches, "stretch", "stretches");
@@ -236,26 +241,18 @@ static void put_reason(FILE *out, const char **before, size_t count, const char 
     }
 }
 
-static size_t count_errors(const wh_record_t *record) {
-    size_t errors = 0;
-    for (size_t i = 0; i < record->command_count; ++i) {
-        errors += record->commands[i].error != WH_OK ? 1 : 0;
-    }
-    return errors;
-}
-
 /* Errors that the script caught are no reason. Complaints are, whatever was expected. */
 static void put_reasons(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     const size_t unmet = count_unmet(record);
-    const size_t expected = record->expectation_count;
+    const size_t expected = wh_record_expectations(record);
     size_t complaints = 0;
     for (size_t i = 0; i < record->event_count; ++i) {
         complaints += wh_record_is_complaint(record->events[i].event.kind) ? 1 : 0;
     }
     const char *before = ": ";
     put_reason(printer->out, &before, unmet, "expectation not met", "expectations not met");
-    put_reason(printer->out, &before, record->failure ? count_errors(record) : 0, "command with an error",
+    put_reason(printer->out, &before, record->failure ? wh_record_errors(record) : 0, "command with an error",
                "commands with errors");
     put_reason(printer->out, &before, complaints, "complaint", "complaints");
     if (before[0] == ',' && unmet == 0 && expected > 0) {
@@ -277,7 +274,7 @@ static void print_cut(const wh_printer_t *printer) {
     }
 }
 
-static void print_summary(const wh_printer_t *printer) {
+static void print_summary(const wh_printer_t *printer, bool is_brief) {
     const wh_record_t *record = printer->record;
     const char *verdict = record->ok ? "ok" : "failed";
     wh_ink_t ink = record->ok ? WH_INK_GOOD : WH_INK_BAD;
@@ -287,6 +284,10 @@ static void print_summary(const wh_printer_t *printer) {
     }
     print_times(printer);
     print_counted(printer);
+    if (is_brief) {
+        fputs("brief: commands, near misses, stations' times and places of wafers are not listed\n",
+              printer->out);
+    }
     if (record->unlooked) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);
@@ -301,7 +302,7 @@ static void print_summary(const wh_printer_t *printer) {
         put_reasons(printer);
     } else {
         const char *before = ", ";
-        put_reason(printer->out, &before, count_errors(record), "error caught", "errors caught");
+        put_reason(printer->out, &before, wh_record_errors(record), "error caught", "errors caught");
     }
     fputc('\n', printer->out);
     if (record->failure) {
@@ -329,22 +330,32 @@ static void print_window(const wh_printer_t *printer, const wh_record_sections_t
 
 /* ---------------------------------------------------------------------------------------------------- all */
 
+static void print_rows(const wh_printer_t *printer) {
+    if (!wh_record_is_timed(printer->record)) {
+        wh_print_commands(printer);
+    }
+    wh_print_flow(printer);
+    wh_print_errors(printer);
+    wh_print_handovers(printer);
+    print_complaints(printer, false);
+    wh_print_stations(printer);
+    wh_print_clearances(printer);
+    wh_print_wafers(printer);
+}
+
 int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style,
                           const wh_record_sections_t *sections) {
     static const wh_record_sections_t none = {0};
     const wh_record_sections_t *wanted = sections ? sections : &none;
     const wh_printer_t printer = {record, style, out};
     print_heading(&printer);
-    if (!wh_record_is_timed(record)) {
-        wh_print_commands(&printer);
+    if (wanted->brief) {
+        wh_print_flow(&printer);
+        print_complaints(&printer, true);
+        wh_print_clearances(&printer);
+    } else {
+        print_rows(&printer);
     }
-    wh_print_flow(&printer);
-    wh_print_errors(&printer);
-    wh_print_handovers(&printer);
-    print_complaints(&printer);
-    wh_print_stations(&printer);
-    wh_print_clearances(&printer);
-    wh_print_wafers(&printer);
     if (wanted->gantt) {
         print_window(&printer, wanted);
     }
@@ -355,6 +366,6 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
         wh_print_margins(&printer);
     }
     print_expectations(&printer);
-    print_summary(&printer);
+    print_summary(&printer, wanted->brief);
     return fflush(out) != 0 || ferror(out) ? -1 : 0;
 }

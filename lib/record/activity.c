@@ -135,7 +135,7 @@ static wh_busy_span_t span_of(size_t resource) {
 
 static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
     wh_busy_span_t span = span_of(resource);
-    if (end == activity->open[resource].begin) {
+    if (end == activity->open[resource].begin || activity->drops_intervals) {
         return;
     }
     activity->intervals = wh_array_grow(activity->intervals, activity->interval_count,

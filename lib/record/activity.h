@@ -56,6 +56,7 @@ typedef struct {
 /* Zero it before a run. Read `shares`, and `intervals` once it has ended. */
 typedef struct {
     int64_t shares[WH_SHARES]; /* slices */
+    bool drops_intervals;
     wh_busy_span_t *intervals; /* in the order in which they ended */
     size_t interval_count, interval_capacity;
     struct {

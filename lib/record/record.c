@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "dropped.h"
 
 bool wh_record_is_timed(const wh_record_t *record) {
     return record->layout && record->layout->tool;
@@ -24,7 +25,7 @@ bool wh_record_kept_still(const wh_record_t *record) {
 }
 
 bool wh_record_moved_nothing(const wh_record_t *record) {
-    return record->ok && record->command_count == 0 && wh_record_played_nothing(record);
+    return record->ok && wh_record_commands(record) == 0 && wh_record_played_nothing(record);
 }
 
 const char *wh_record_error_text(wh_status_t status) {
@@ -44,6 +45,22 @@ const char *wh_record_error_text(wh_status_t status) {
     return "unknown status";
 }
 
+size_t wh_record_commands(const wh_record_t *record) {
+    return record->dropped.commands + record->command_count;
+}
+
+size_t wh_record_errors(const wh_record_t *record) {
+    size_t errors = record->dropped.errors;
+    for (size_t i = 0; i < record->command_count; ++i) {
+        errors += record->commands[i].error != WH_OK ? 1 : 0;
+    }
+    return errors;
+}
+
+size_t wh_record_expectations(const wh_record_t *record) {
+    return record->dropped.expectations + record->expectation_count;
+}
+
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
     record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
                                      sizeof *record->commands);
@@ -52,7 +69,8 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
                                      .text = wh_text_copy(text),
                                      .begin_s = begin_s,
                                      .end_s = begin_s,
-                                     .first_event = record->event_count};
+                                     .first_event = record->event_count,
+                                     .number = record->command_count - 1};
     return command;
 }
 
@@ -64,6 +82,7 @@ void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, co
 }
 
 static wh_expectation_record_t *add_expectation(wh_record_t *record) {
+    wh_dropped_expectation(record);
     record->expectations = wh_array_grow(record->expectations, record->expectation_count,
                                          &record->expectation_capacity, sizeof *record->expectations);
     return &record->expectations[record->expectation_count++];
@@ -80,6 +99,9 @@ static size_t name_in(const char *text) {
 }
 
 void wh_record_count_implied(wh_record_t *record, int line, const char *text, bool ok) {
+    if (record->dropped.is_wanted) {
+        return; /* studies alone read them */
+    }
     record->implied = wh_array_grow(record->implied, record->implied_count, &record->implied_capacity,
                                     sizeof *record->implied);
     record->implied[record->implied_count++] =
@@ -112,10 +134,11 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
     record->cycles =
         wh_array_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
-    record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
+    record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin, 0};
 }
 
 void wh_record_add_station_event(wh_record_t *record, const wh_station_event_record_t *event) {
+    wh_dropped_station_event(record);
     record->station_events = wh_array_grow(record->station_events, record->station_event_count,
                                            &record->station_event_capacity, sizeof *record->station_events);
     record->station_events[record->station_event_count++] = *event;
@@ -274,6 +297,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->waits);
     free(record->station_events);
     free(record->centrings);
+    free(record->dropped.puts_of);
     free(record->reach);
     free(record->wafers);
     wh_activity_free(&record->activity);

@@ -18,6 +18,9 @@ typedef struct {
     double begin_s, end_s;     /* simulated time */
     int64_t shares[WH_SHARES]; /* its slices by share */
     size_t first_event;        /* the number of events before it */
+    size_t number;             /* of commands that began before it */
+    bool is_over;
+    bool is_counted; /* some of its slices were left out */
 } wh_command_record_t;
 
 /* The place of a wafer that an edge grip has met: see record/seat.h. */
@@ -71,6 +74,7 @@ typedef struct {
     int line;
     char *name;    /* "" without one */
     int64_t begin; /* slices before it */
+    size_t wafers; /* done in it, of puts whose rows were dropped */
 } wh_cycle_record_t;
 
 /* The margin of an axis to the end of its travel, at a station. */
@@ -109,9 +113,27 @@ typedef struct {
 typedef struct {
     bool is_wanted;
     int64_t left_out, moving;
+    size_t commands;              /* that are over, and of which slices were left out */
     bool is_verified;             /* some stretches that could be left out were played and compared */
     uint64_t stretches, verified; /* all such stretches, and those of them */
 } wh_counted_record_t;
+
+/* A wafer's puts where puts count, of which there are no rows. */
+typedef struct {
+    bool is_put;
+    size_t cycle; /* 1 + the last cycle in which it counted; 0: none */
+} wh_dropped_puts_t;
+
+/* Rows that were dropped, see dropped.h: their sums. All are 0 where rows are kept. */
+typedef struct {
+    bool is_wanted;
+    size_t commands, errors;    /* commands that are over, and those of them that had an error */
+    size_t expectations;        /* that were met */
+    size_t complaints;          /* so many events at the list's front are complaints, which stay */
+    size_t puts, wafers;        /* puts, and those of them that count */
+    bool is_twice;              /* a wafer was put twice where puts count */
+    wh_dropped_puts_t *puts_of; /* by wafer; null: none yet */
+} wh_dropped_t;
 
 typedef struct {
     char *script;              /* path as given */
@@ -156,12 +178,18 @@ typedef struct {
     wh_wafer_record_t *wafers;   /* layout->wafer_count of them */
     const char *unlooked;        /* says what nobody looked for, a constant text; null: nothing */
     wh_counted_record_t counted; /* slices that were left out */
-    char *never_came;            /* the faults and errors on purpose that did not come; null: none; owned */
-    bool checked;                /* for collisions; then these are the smallest gaps */
+    wh_dropped_t dropped;
+    char *never_came; /* the faults and errors on purpose that did not come; null: none; owned */
+    bool checked;     /* for collisions; then these are the smallest gaps */
     wh_clearance_t clearances[WH_CLEARANCES];
     wh_flow_t *flow;     /* wafers through a tool of times alone; null: none; owned */
     wh_curves_t *curves; /* the gaps over time; null unless checked */
 } wh_record_t;
+
+/* In all, with those whose rows were dropped: commands, those of them that had an error, expectations. */
+size_t wh_record_commands(const wh_record_t *record);
+size_t wh_record_errors(const wh_record_t *record);
+size_t wh_record_expectations(const wh_record_t *record);
 
 /* Appending; texts are copied. */
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);

@@ -1,6 +1,7 @@
 #include "recorder.h"
 
 #include "../text/array.h"
+#include "dropped.h"
 #include "seat.h"
 
 #include <stdlib.h>
@@ -83,8 +84,11 @@ static void count_puts(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
 
 const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, const char *text,
                                              double begin_s) {
-    recorder->running = (int32_t)recorder->record->command_count;
-    wh_command_record_t *command = wh_record_add_command(recorder->record, line, text, begin_s);
+    wh_record_t *record = recorder->record;
+    wh_command_record_t *command = record->dropped.is_wanted
+                                       ? wh_dropped_begin(record, recorder->layout, line, text, begin_s)
+                                       : wh_record_add_command(record, line, text, begin_s);
+    recorder->running = (int32_t)(command - record->commands);
     command->task = recorder->number;
     return command;
 }
@@ -97,6 +101,8 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     wh_command_record_t *command = &recorder->record->commands[recorder->running];
     command->end_s = end_s;
     command->error = error;
+    command->is_over = true;
+    recorder->record->counted.commands += command->is_counted ? 1 : 0;
     if (error == WH_OK && !wh_record_is_teaching(recorder->record, recorder->running)) {
         count_puts(recorder, wafers);
     } else if (error != WH_OK) {
@@ -108,10 +114,13 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
 
 /* The running command that began first; WH_NONE: none runs. */
 static int32_t first_command(const wh_recorder_t *recorder) {
+    const wh_command_record_t *commands = recorder->record->commands;
     int32_t first = WH_NONE;
     for (size_t i = 0; i < recorder->part_count; ++i) {
         const int32_t command = recorder->parts[i].command;
-        first = command != WH_NONE && (first == WH_NONE || command < first) ? command : first;
+        const bool is_earlier =
+            command != WH_NONE && (first == WH_NONE || commands[command].number < commands[first].number);
+        first = is_earlier ? command : first;
     }
     return first;
 }
@@ -184,10 +193,12 @@ void wh_recorder_repeat(wh_recorder_t *recorder, int64_t slices, const wh_state_
         const wh_recorder_part_t *part = &recorder->parts[i];
         if (part->command != WH_NONE) {
             record->commands[part->command].shares[wh_activity_share(&part->task, state)] += slices;
+            record->commands[part->command].is_counted = true;
         }
     }
     if (recorder->running != WH_NONE && recorder->part_count == 0) {
         record->commands[recorder->running].shares[record->activity.last.share] += slices;
+        record->commands[recorder->running].is_counted = true;
     }
 }
 
@@ -208,7 +219,7 @@ static void end_wait(wh_recorder_t *recorder, size_t i) {
     wh_wait_record_t *wait = &record->waits[i];
     wait->is_open = false;
     wait->end = recorder->slice;
-    if (wait->end == wait->begin) {
+    if (wait->end == wait->begin || record->dropped.is_wanted) {
         free(wait->what);
         --record->wait_count;
         memmove(wait, wait + 1, (record->wait_count - i) * sizeof *wait);

@@ -227,7 +227,9 @@ static void search_cycles(search_t *search, wh_steady_cycle_t *steady) {
 
 wh_steady_cycle_t wh_steady_cycle(const wh_record_t *record) {
     wh_steady_cycle_t steady = {.found = WH_STEADY_NO_COMMANDS, .figure = WH_FIGURE_NO_WAFER};
-    if (record->layout && record->command_count > 0) {
+    if (record->dropped.is_wanted) {
+        steady.found = WH_STEADY_NO_ROWS;
+    } else if (record->layout && record->command_count > 0) {
         search_t search = {.record = record, .kinds = kinds_of(record)};
         search_cycles(&search, &steady);
         free(search.cycles);
@@ -240,6 +242,7 @@ const char *wh_steady_reason(wh_steady_t found) {
     static const char *const texts[] = {
         [WH_STEADY_FOUND] = NULL,
         [WH_STEADY_NO_COMMANDS] = "there are no commands",
+        [WH_STEADY_NO_ROWS] = "commands were not kept",
         [WH_STEADY_NO_CYCLES] = "no two cycles are marked, and no sequence of commands that repeats makes up "
                                 "half of the run",
         [WH_STEADY_UNLIKE] =

@@ -21,6 +21,7 @@
 typedef enum {
     WH_STEADY_FOUND,
     WH_STEADY_NO_COMMANDS, /* a log of moves only, a script that moves nothing, or no cell */
+    WH_STEADY_NO_ROWS,     /* rows were dropped, see dropped.h */
     WH_STEADY_NO_CYCLES,   /* no sequence makes up the run, and fewer than two cycles are marked */
     WH_STEADY_UNLIKE       /* no cycle is repeated by the next one */
 } wh_steady_t;

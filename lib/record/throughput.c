@@ -11,8 +11,15 @@ static bool does_count(const wh_record_t *record, const wh_put_record_t *put) {
 size_t *wh_throughput_cycle_wafers(const wh_record_t *record) {
     size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers);
     /* For each wafer: 1 + the last cycle in which it counted. */
-    size_t *counted = wh_array_new(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
+    const size_t wafer_count = record->layout ? record->layout->wafer_count : 0;
+    size_t *counted = wh_array_new(wafer_count, sizeof *counted);
     size_t after = 0; /* the number of cycles that have begun */
+    for (size_t i = 0; i < record->cycle_count; ++i) {
+        wafers[i] = record->cycles[i].wafers;
+    }
+    for (size_t w = 0; record->dropped.puts_of && w < wafer_count; ++w) {
+        counted[w] = record->dropped.puts_of[w].cycle;
+    }
     for (size_t i = 0; i < record->put_count; ++i) {
         const wh_put_record_t *put = &record->puts[i];
         while (after < record->cycle_count && record->cycles[after].begin < put->slice) {
@@ -73,7 +80,10 @@ static bool counts_anywhere(const wh_layout_t *layout) {
 /* True if a wafer was put twice at places where puts count. */
 static bool is_put_twice(const wh_record_t *record) {
     bool *seen = wh_array_new(record->layout->wafer_count, sizeof *seen);
-    bool twice = false;
+    bool twice = record->dropped.is_twice;
+    for (size_t w = 0; record->dropped.puts_of && w < record->layout->wafer_count; ++w) {
+        seen[w] = record->dropped.puts_of[w].is_put;
+    }
     for (size_t i = 0; i < record->put_count; ++i) {
         const wh_put_record_t *put = &record->puts[i];
         if (does_count(record, put)) {
@@ -105,10 +115,11 @@ wh_throughput_t wh_throughput(const wh_record_t *record) {
     if (!record->layout) {
         return throughput;
     }
-    throughput.puts = record->put_count;
+    throughput.puts = record->dropped.puts + record->put_count;
     count_cycles(record, &throughput);
     if (throughput.first == 0) {
         throughput.slices = record->slices;
+        throughput.wafers = record->dropped.wafers;
         for (size_t i = 0; i < record->put_count; ++i) {
             throughput.wafers += does_count(record, &record->puts[i]) ? 1 : 0;
         }

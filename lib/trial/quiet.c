@@ -126,6 +126,7 @@ typedef struct {
     size_t g;
     wh_vec3_t at;
     wh_real_t margin; /* nothing happens between things that are farther from each other */
+    bool is_stroke;   /* what stands does not matter: wh_quiet_room has looked at it */
 } mover_t;
 
 static wh_real_t margin_of(const wh_simulator_t *simulator) {
@@ -184,6 +185,9 @@ static int64_t until_place(const mover_t *mover, const wh_vec3_t *place, int32_t
     if (other != WH_NONE && go_together(mover, other)) {
         return slices_above(mover, place);
     }
+    if (mover->is_stroke && (other == WH_NONE || (mover->axes & mover->quiet->movers[other]) == 0)) {
+        return INT64_MAX;
+    }
     const wh_real_t way = way_of(mover, mover->g) + (other == WH_NONE ? 0 : way_of(mover, (size_t)other));
     return slices_until(mover, wh_vec3_norm(&from), way);
 }
@@ -222,8 +226,9 @@ static int64_t until_stations(const mover_t *mover) {
     const wh_cell_t *cell = &mover->simulator->cell;
     const bool is_passive = kind_of(mover->simulator, mover->g) == WH_GRIP_PASSIVE;
     const bool is_flat = keeps_height(mover) && !is_passive;
+    const bool matter = is_passive || (holds(mover->simulator, mover->g) && !mover->is_stroke);
     int64_t slices = INT64_MAX;
-    for (size_t s = 0; (is_passive || holds(mover->simulator, mover->g)) && s < cell->count; ++s) {
+    for (size_t s = 0; matter && s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         const bool matters = is_passive || (station->chuck != (int32_t)mover->g &&
                                             !(is_flat && is_level(&station->base_from_station.R)));
@@ -263,10 +268,27 @@ static int64_t until_near(const mover_t *mover) {
     return slices > 0 ? least_of(slices, until_wafers(mover)) : 0;
 }
 
+/* By the way that its axis goes up or down, where that is known. */
+static int64_t until_stroke_ends(const mover_t *mover, const wh_quiet_stroke_t *stroke) {
+    mover_t own = *mover;
+    size_t axis = WH_AXES;
+    const wh_real_t room =
+        stroke ? wh_quiet_room(mover->quiet, mover->simulator, mover->axes, stroke->still, mover->g, &axis)
+               : 0;
+    own.is_stroke = true;
+    const int64_t slices = room > 0 ? until_near(&own) : 0;
+    return slices > 0 ? least_of(slices, stroke->within(stroke->user, axis, room)) : 0;
+}
+
 /* --------------------------------------------------------------------------------------------- the slices */
 
+static int64_t until_mover(const mover_t *mover, const wh_quiet_stroke_t *stroke) {
+    const int64_t slices = until_near(mover);
+    return slices > 0 ? slices : until_stroke_ends(mover, stroke);
+}
+
 int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
-                        uint32_t axes) {
+                        uint32_t axes, const wh_quiet_stroke_t *stroke) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     int64_t slices = is_idle(simulator, last) && do_doors_stand(quiet, simulator, last, axes)
                          ? until_fault(simulator, last)
@@ -279,8 +301,8 @@ int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator
         const wh_gripper_t *gripper = &storage->grippers[g];
         const wh_vec3_t *at = gripper->wafer == WH_NONE ? &gripper->base_from_gripper.r
                                                         : &storage->wafers[gripper->wafer].base_from_wafer.r;
-        const mover_t mover = {quiet, simulator, axes, g, *at, margin_of(simulator)};
-        slices = (axes & quiet->movers[g]) == 0 ? slices : least_of(slices, until_near(&mover));
+        const mover_t mover = {quiet, simulator, axes, g, *at, margin_of(simulator), false};
+        slices = (axes & quiet->movers[g]) == 0 ? slices : least_of(slices, until_mover(&mover, stroke));
     }
     return slices;
 }

@@ -31,12 +31,29 @@ void wh_quiet_begin(wh_quiet_t *quiet, const wh_machine_t *machine, wh_real_t sl
 /* The axes that the track's running segment moves. */
 uint32_t wh_quiet_axes(const wh_track_t *track);
 
+/* Those of them that stand but for rounding, if the robot is a usual one: in a line straight up or down. */
+uint32_t wh_quiet_still(const wh_track_t *track);
+
+/* How many of the next slices an axis goes by at most so far, mm, from where it stands: what the caller knows
+ * of its segment. */
+typedef struct {
+    const void *user;
+    uint32_t still; /* of the axes that segments move: those of wh_quiet_still */
+    int64_t (*within)(const void *user, size_t axis, wh_real_t way);
+} wh_quiet_stroke_t;
+
 /* The number of next slices in which nothing can happen but motion, if they have the valves of `last`, the
  * command of the last slice, and no orders, and segments move these axes alone. 0: something may happen in
- * the next one; INT64_MAX: nothing ever. Cost: about 10 products for each moving gripper and each station and
- * wafer. */
+ * the next one; INT64_MAX: nothing ever. `stroke` is asked where a gripper goes up or down; null: nobody knows
+ * more than the axes' limits. Cost: about 10 products for each moving gripper and each station and wafer. */
 int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
-                        uint32_t axes);
+                        uint32_t axes, const wh_quiet_stroke_t *stroke);
+
+/* How far gripper g may go, mm, until something may happen between it and what stands; 0: that may be at
+ * once, or of the axes others move it than one that lifts it and `still` ones. `axis` receives that one. Cost: some 50 sums for each
+ * wafer, and, with a wafer, for each station. */
+wh_real_t wh_quiet_room(const wh_quiet_t *quiet, const wh_simulator_t *simulator, uint32_t axes,
+                        uint32_t still, size_t g, size_t *axis);
 
 /* Leaves out this number of slices, in which nothing can happen by wh_quiet_slices: `command` is that of the
  * last of them. The simulator is then as if it had stepped them all. */

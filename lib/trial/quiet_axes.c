@@ -154,6 +154,16 @@ static bool is_any(const wh_track_t *track, size_t own, size_t axis) {
     return true;
 }
 
+static bool is_beside_z(const wh_track_t *track, size_t own, size_t axis) {
+    return axis != WH_CHAIN_Z && is_in_line(track, own, axis);
+}
+
+uint32_t wh_quiet_still(const wh_track_t *track) {
+    const wh_vec3_t *travel = &track->segment.travel;
+    const bool goes_aside = travel->x < 0 || travel->x > 0 || travel->y < 0 || travel->y > 0;
+    return track->segment.kind == WH_SEGMENT_LINE && !goes_aside ? axes_of_robot(track, is_beside_z) : 0;
+}
+
 uint32_t wh_quiet_axes(const wh_track_t *track) {
     switch (track->segment.kind) {
     case WH_SEGMENT_AXES:

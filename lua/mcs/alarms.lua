@@ -127,9 +127,11 @@ return function(native, lookup)
     return native.arm_alarm(error)
   end
 
+  local NONE = {}
+
   -- The first armed error that this command can give and that is raised in this way, or nil.
   local function find(word, how)
-    for _, alarm in ipairs(native.alarms() or {}) do
+    for _, alarm in ipairs(native.alarms() or NONE) do
       local raised = by_number[alarm.error]
       if raised.words[word] and raised.how == how then
         return alarm, raised
@@ -138,7 +140,7 @@ return function(native, lookup)
   end
 
   local function take(error_name)
-    for _, alarm in ipairs(native.alarms() or {}) do
+    for _, alarm in ipairs(native.alarms() or NONE) do
       if by_number[alarm.error].name == error_name then
         native.disarm(alarm.number)
         return true
@@ -191,8 +193,12 @@ return function(native, lookup)
 
   -- Call it when the running command is about to move.
   function alarms.begin_motion(text)
+    local armed = native.alarms()
+    if not armed then
+      return
+    end
     local bearer, stopped = alarms.bearer(), by_number[lookup.errors.STOPPED.number]
-    for _, alarm in ipairs(not stopping[bearer] and native.alarms() or {}) do
+    for _, alarm in ipairs(not stopping[bearer] and armed or NONE) do
       if by_number[alarm.error] == stopped and stopped.words[text:match("^[%u_]+")] then
         stopping[bearer] = alarm.number
         native.stop_in(BEFORE_STOP)
@@ -283,7 +289,7 @@ return function(native, lookup)
   local OF_CENTRING = { TOO_FEW_SAMPLES = true, CENTRE_NOT_SURE = true }
 
   local function check_centring(target)
-    for _, alarm in ipairs(target.centre and native.alarms() or {}) do
+    for _, alarm in ipairs(target.centre and native.alarms() or NONE) do
       local raised = by_number[alarm.error]
       if OF_CENTRING[raised.name] then
         raise(alarm, raised)
@@ -299,7 +305,7 @@ return function(native, lookup)
   function alarms.break_at(word, half, target)
     local robot = alarms.robot()
     check_centring(target)
-    for _, alarm in ipairs(not broken[robot] and native.alarms() or {}) do
+    for _, alarm in ipairs(not broken[robot] and native.alarms() or NONE) do
       local raised = by_number[alarm.error]
       local cause = raised.words[word] and causes[raised.name] and causes[raised.name](half, target)
       if cause then
@@ -320,7 +326,7 @@ return function(native, lookup)
   -- Breaks the mechanism that this word moves, for an armed error of that name.
   local function break_mechanism(error_name, word, fault)
     local bearer = alarms.bearer()
-    for _, alarm in ipairs(not broken[bearer] and native.alarms() or {}) do
+    for _, alarm in ipairs(not broken[bearer] and native.alarms() or NONE) do
       local raised = by_number[alarm.error]
       if raised.name == error_name and raised.words[word] then
         broken[bearer] = { alarm = alarm, fault = native.fault(fault) }

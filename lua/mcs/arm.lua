@@ -64,6 +64,15 @@ return function(native, lookup, tasks, alarms)
 
   local STATION, DOOR = "station %s", "door %s"
 
+  -- By a station's name its text as a resource, made once.
+  local station_texts = {}
+
+  local function station_text(name)
+    local text = station_texts[name] or STATION:format(name)
+    station_texts[name] = text
+    return text
+  end
+
   -- With several robots, the gripper of a line that names none; else nil.
   function arm.leader()
     local robot = tasks.current().robot
@@ -94,7 +103,7 @@ return function(native, lookup, tasks, alarms)
   -- PUMP needs the load lock and all of its doors.
   function arm.needs_lock(station_name)
     local station = type(station_name) == "string" and native.layout.stations[station_name]
-    local needs = { station and STATION:format(station_name) or nil, chucks = {}, is_lone = true }
+    local needs = { station and station_text(station_name) or nil, chucks = {}, is_lone = true }
     for door in pairs(station and station.door_sides or {}) do
       needs[#needs + 1] = DOOR:format(native.layout.doors[door].name)
     end
@@ -121,7 +130,7 @@ return function(native, lookup, tasks, alarms)
       end or nil
     end
     if station then
-      needs[1] = STATION:format(station_name)
+      needs[1] = station_text(station_name)
       add_chucks(needs.chucks, station)
       if not before then
         add_door(needs, station)
@@ -133,7 +142,7 @@ return function(native, lookup, tasks, alarms)
   -- The robot that stands there, or nil; robot `but` does not count.
   function arm.stands_in(resource, but)
     for robot, state in pairs(states) do
-      if robot ~= but and state.inside and STATION:format(state.inside.station) == resource then
+      if robot ~= but and state.inside and station_text(state.inside.station) == resource then
         return robot
       end
     end
@@ -142,7 +151,7 @@ return function(native, lookup, tasks, alarms)
   -- True if that robot stands there.
   function arm.is_inside(resource, robot)
     local state = robot and states[robot]
-    return state and state.inside ~= nil and STATION:format(state.inside.station) == resource
+    return state and state.inside ~= nil and station_text(state.inside.station) == resource
   end
 
   -- The state of the robot that stands in the station.
@@ -160,7 +169,7 @@ return function(native, lookup, tasks, alarms)
     local inside = arm.state(needs.robot).inside
     local station = inside and native.layout.stations[inside.station]
     if station then
-      needs[1] = STATION:format(inside.station)
+      needs[1] = station_text(inside.station)
       add_chucks(needs.chucks, station)
       add_door(needs, station)
     end
@@ -208,6 +217,9 @@ return function(native, lookup, tasks, alarms)
   -- Raises an error armed to come before the command. The command is recorded nevertheless, because STATUS tells the
   -- error that a completion told.
   local function refuse_armed(word, text)
+    if not native.alarms() then
+      return
+    end
     local ok, problem = pcall(alarms.refuse, word)
     if not ok then
       native.begin(text, tasks.current().line)

@@ -2,7 +2,7 @@
 -- if it wants that, and CONTINUE goes on with it.
 
 -- Local copies: a script may set globals of these names.
-local coroutine, error, ipairs, pairs, pcall, type = coroutine, error, ipairs, pairs, pcall, type
+local coroutine, error, ipairs, next, pairs, pcall, type = coroutine, error, ipairs, next, pairs, pcall, type
 
 return function(native, lookup, arm, ways, centring, tasks, alarms)
   local player = {}
@@ -81,8 +81,10 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
   -- Plans the rest of a begun pattern.
   local function plan_ahead(begun, judged)
     local detours = {}
-    for way, detour in pairs(begun.detours) do
-      detours[way] = detour
+    if next(begun.detours) then
+      for way, detour in pairs(begun.detours) do
+        detours[way] = detour
+      end
     end
     local plan, problem = try(begun, judged, detours)
     local first = problem

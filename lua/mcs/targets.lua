@@ -8,6 +8,7 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
   local targets = {}
 
   local parameters = lookup.parameters
+  local parameter_names = lookup.names(parameters)
 
   targets.shift = stations.shift
 
@@ -35,8 +36,13 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
     return prefix and targets.fields[prefix == "" and word or "swap"] or {}
   end
 
+  local NONE = {}
+
   local function check_options(options, own)
-    if options ~= nil and type(options) ~= "table" then
+    if options == nil then
+      return NONE
+    end
+    if type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
     local common = own == targets.fields.swap and lookup.swap_options or lookup.options
@@ -105,31 +111,47 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
 
   -- Checks relations between parameters. Strokes end where the neighbouring slots begin: a GET from below
   -- the next one would take its wafer.
-  local function rules(target, station, layout)
-    local pitch = station.slots > 1 and station.pitch or math.huge
-    local window = layout.tolerance.projz / layout.slice
-    local bottom = target.offset - target.stroke
-    return {
-      { "offset", target.offset <= target.stroke, "from 0 to the stroke, %.10g mm", target.stroke },
-      { "stroke", math.max(-bottom, target.offset) < pitch,
-        "within the pitch of %.10g mm below and above the slot", pitch },
-      { "release", target.is_passive or target.release >= bottom and target.release <= target.offset,
-        "within the stroke: from %.10g to %.10g mm", bottom, target.offset },
-      { "pickup_speed", not layout.sampled or target.pickup_speed <= window,
-        'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
-      { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
-        "0, or 1e-6 mm/s^2 or more" },
-      { "centre", not target.centre or station.beams[target.robot] > 1, "%s", no_centre(target, station) },
-      { "retries", math.tointeger(target.retries), "a whole number" },
-      { "dz", math.max(-bottom - target.dz, target.offset + target.dz) < pitch,
-        "with the stroke within the pitch of %.10g mm below and above the slot", pitch },
-    }
-  end
+  -- `limits`: pitch, window (the fastest stroke, mm/s), bottom (of the stroke) and the station.
+  local RULES = {
+    { "offset", function(target)
+      return target.offset <= target.stroke, "from 0 to the stroke, %.10g mm", target.stroke
+    end },
+    { "stroke", function(target, limits)
+      return math.max(-limits.bottom, target.offset) < limits.pitch,
+        "within the pitch of %.10g mm below and above the slot", limits.pitch
+    end },
+    { "release", function(target, limits)
+      return target.is_passive or target.release >= limits.bottom and target.release <= target.offset,
+        "within the stroke: from %.10g to %.10g mm", limits.bottom, target.offset
+    end },
+    { "pickup_speed", function(target, limits)
+      return target.pickup_speed <= limits.window,
+        'at most %.10g mm/s with these slices, or a layout with check = "swept"', limits.window
+    end },
+    { "pickup_acceleration", function(target)
+      return target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6, "0, or 1e-6 mm/s^2 or more"
+    end },
+    { "centre", function(target, limits)
+      local is_good = not target.centre or limits.station.beams[target.robot] > 1
+      return is_good, "%s", not is_good and no_centre(target, limits.station)
+    end },
+    { "retries", function(target)
+      return math.tointeger(target.retries), "a whole number"
+    end },
+    { "dz", function(target, limits)
+      return math.max(-limits.bottom - target.dz, target.offset + target.dz) < limits.pitch,
+        "with the stroke within the pitch of %.10g mm below and above the slot", limits.pitch
+    end },
+  }
 
-  local function check(target, all, prefix)
-    for _, rule in ipairs(all) do
-      if not rule[2] then
-        local name, expected = rule[1], rule[3]:format(rule[4], rule[5])
+  local function check(target, station, layout, prefix)
+    local limits = { station = station, pitch = station.slots > 1 and station.pitch or math.huge, bottom = target.offset - target.stroke,
+      window = layout.sampled and layout.tolerance.projz / layout.slice or math.huge }
+    for _, rule in ipairs(RULES) do
+      local is_good, expected, first, second = rule[2](target, limits)
+      if not is_good then
+        local name = rule[1]
+        expected = expected:format(first, second)
         local value = lookup.quote(target[name])
         name = name == "dz" and (prefix or "") .. name or name
         native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(name, value, expected))
@@ -153,7 +175,7 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
     local found = word == "get" and prefix and align.correction(station.name, options, prefix)
     read_corrections(target, prefix and options or {}, prefix or "", found or {})
     target.place = stations.place(station, number, robot, target)
-    for name in pairs(parameters) do
+    for _, name in ipairs(parameter_names) do
       target[name] = options[name]
       if target[name] == nil then
         target[name] = station[name]
@@ -166,7 +188,7 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
     read_centre(target, word, station, options, prefix)
     local grip = native.layout.grippers[target.gripper].grip
     target.grip, target.plane, target.is_passive = grips[grip], planes.below, grip == "passive"
-    check(target, rules(target, station, native.layout), prefix)
+    check(target, station, native.layout, prefix)
     target.vent = target.is_passive and native.layout.vent or nil
     -- A blade that is turned over comes from above: its pads stop at `touch`, above the slot's plane.
     local flip = lookup.axis("flip", target.robot)

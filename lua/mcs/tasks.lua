@@ -20,6 +20,7 @@ return function(native, lookup)
   local resume, yield = coroutine.resume, coroutine.yield
   -- The value with which a task's coroutine yields; no script has it.
   local WAITS = setmetatable({}, { __metatable = false })
+  local NONE = {}
 
   local script = { lane = 1, number = 0, name = "the script" }
   local current = script
@@ -306,6 +307,16 @@ return function(native, lookup)
     return current.has_waited
   end
 
+  -- The running task's command has all that it asked for.
+  local function hold(request, needs)
+    for _, resource in ipairs(request.needs) do
+      held[resource] = current
+    end
+    request.needs.robot = needs.robot
+    current.holds = request.needs
+    native.hold_mechanisms(needs.robot or false, table.unpack(needs.chucks or NONE))
+  end
+
   -- A command begins that needs some of these: { robot = index, station = NAME, chucks = list, scan = true, latches = true }.
   function module.take(needs)
     current.has_waited = false
@@ -331,6 +342,10 @@ return function(native, lookup)
     end
     for _, resource in ipairs(request.needs) do
       request.wants[resource] = true
+    end
+    if not task.job and is_free(request) then
+      hold(request, needs)
+      return
     end
     requests[#requests + 1] = request
     current.request = request
@@ -367,12 +382,7 @@ return function(native, lookup)
       native.waits(nil)
       error(problem, 0)
     end
-    for _, resource in ipairs(request.needs) do
-      held[resource] = current
-    end
-    request.needs.robot = needs.robot
-    current.holds = request.needs
-    native.hold_mechanisms(needs.robot or false, table.unpack(needs.chucks or {}))
+    hold(request, needs)
   end
 
   -- module.stands_in(resource, but): the robot, other than `but`, that stands in it, or nil; and

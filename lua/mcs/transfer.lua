@@ -313,6 +313,9 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
 
   -- The command's text for the record: with its corrections, and where it stops.
   local function text_of(word, station, slot, options, ...)
+    if type(options) ~= "table" then
+      return lookup.command(word, station, slot)
+    end
     local fields = {}
     for _, prefix in ipairs({ ... }) do
       for _, name in ipairs(lookup.correction_fields) do
