@@ -11,11 +11,13 @@
 #include "apart.h"
 #include "app.h"
 #include "log_arguments.h"
+#include "replay_field.h"
 
 typedef struct {
     const char *path;
     wh_log_more_t more;
     bool json, lenient;
+    wh_replay_field_arguments_t field;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -27,17 +29,35 @@ static const wh_option_t options[] = {
     {0}};
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL, NULL}, {wh_log_more_options, offsetof(arguments_t, more), NULL, NULL}, {0}};
+    {options, 0, NULL, NULL},
+    {wh_log_more_options, offsetof(arguments_t, more), NULL, NULL},
+    {wh_replay_field_options, offsetof(arguments_t, field), "A field log:", wh_replay_field_check},
+    {wh_record_options, offsetof(arguments_t, field.record), NULL, wh_record_arguments_check},
+    {wh_layout_options, offsetof(arguments_t, field.layout), NULL, NULL},
+    {0}};
+
+/* A field log is one file, and has no messages that could be lost. */
+static void check(const void *filled, struct argp_state *state) {
+    const arguments_t *arguments = filled;
+    const char *other = arguments->lenient               ? "lenient"
+                        : arguments->more.is_alone       ? "alone"
+                        : arguments->more.then.count > 0 ? "then"
+                                                         : NULL;
+    if (arguments->field.field && other) {
+        argp_error(state, "--%s: goes with an LCM event log (expected no --field)", other);
+    }
+}
 
 static const wh_command_line_t command_line = {
     .name = "replay",
-    .synopsis = "FILE",
+    .synopsis = "FILE\nLAYOUT --field FILE.csv",
     .about =
         "Steps the library through the commands of an LCM event log and compares each slice's state, body "
-        "and hash.\v" WH_HELP_EXIT,
+        "and hash; or plays a controller's log from the field against a layout's cell.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "file",
-    .operand_variable = offsetof(arguments_t, path)};
+    .operand_variable = offsetof(arguments_t, path),
+    .check = check};
 
 /* The replay that was read. */
 typedef struct {
@@ -471,23 +491,30 @@ static int replay_files(const arguments_t *arguments, const wh_log_files_t *file
     return status;
 }
 
-int wh_app_replay(int argc, char **argv) {
-    arguments_t arguments = {0};
+static int replay_log(const arguments_t *arguments) {
     wh_log_files_t files;
     char message[WH_LOG_FILES_MESSAGE];
     int status = WH_EXIT_USAGE;
-    wh_options_parse(&command_line, argc, argv, &arguments);
-    const wh_named_file_t named = {"the log", arguments.path, false};
-    const wh_log_names_t names = {arguments.path, arguments.more.then.items, arguments.more.then.count,
-                                  arguments.more.is_alone};
+    const wh_named_file_t named = {"the log", arguments->path, false};
+    const wh_log_names_t names = {arguments->path, arguments->more.then.items, arguments->more.then.count,
+                                  arguments->more.is_alone};
     if (wh_files_are_apart(&named, 1, true)) {
         if (wh_log_files_open(&files, &names, message)) {
-            status = replay_files(&arguments, &files);
+            status = replay_files(arguments, &files);
         } else {
             fprintf(stderr, "%s\n", message);
         }
         wh_log_files_close(&files);
     }
+    return status;
+}
+
+int wh_app_replay(int argc, char **argv) {
+    arguments_t arguments = {0};
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    arguments.field.layout.path = arguments.path;
+    const int status =
+        arguments.field.field ? wh_replay_field(&arguments.field, arguments.json) : replay_log(&arguments);
     wh_option_list_free(&arguments.more.then);
     return status;
 }

@@ -49,9 +49,9 @@ static const char *unit_of(const wh_layout_t *layout, size_t axis) {
 }
 
 /* The first axis whose number is not finite; axis_count: none. */
-static size_t find_not_finite(const wh_plant_t *plant, const double axes[]) {
+static size_t find_not_finite(const wh_plant_t *plant, const wh_real_t q[]) {
     size_t axis = 0;
-    while (axis < plant->command.axis_count && isfinite(axes[axis])) {
+    while (axis < plant->command.axis_count && isfinite(q[axis])) {
         ++axis;
     }
     return axis;
@@ -71,7 +71,7 @@ static size_t find_beyond(const wh_plant_t *plant, const wh_real_t q[]) {
     return machine->axis_count;
 }
 
-static void say_axis(const wh_plant_t *plant, size_t axis, const double axes[], wh_status_t status,
+static void say_axis(const wh_plant_t *plant, size_t axis, const wh_real_t q[], wh_status_t status,
                      char text[WH_PLANT_TEXT]) {
     char name[WH_NAME_SIZE * 2];
     if (axis == plant->command.axis_count) {
@@ -79,14 +79,15 @@ static void say_axis(const wh_plant_t *plant, size_t axis, const double axes[], 
         return;
     }
     wh_layout_name_axis(plant->layout, axis, name, sizeof name);
-    (void)snprintf(text, WH_PLANT_TEXT, "axis %zu, %s: %.9g %s: %s", axis + 1, name, axes[axis],
-                   unit_of(plant->layout, axis), wh_status_text(status));
+    (void)snprintf(text, WH_PLANT_TEXT, "axis %zu, %s: %.9g %s: %s", axis + 1, name,
+                   wh_plant_axis_out(plant->layout, axis, q[axis]), unit_of(plant->layout, axis),
+                   wh_status_text(status));
 }
 
-static wh_status_t refuse(wh_plant_t *plant, size_t axis, const double axes[], wh_status_t status,
+static wh_status_t refuse(wh_plant_t *plant, size_t axis, const wh_real_t q[], wh_status_t status,
                           char text[WH_PLANT_TEXT]) {
     ++plant->found.refused;
-    say_axis(plant, axis, axes, status, text);
+    say_axis(plant, axis, q, status, text);
     return status;
 }
 
@@ -113,21 +114,16 @@ static void look_for_jump(wh_plant_t *plant, const wh_real_t q[], char text[WH_P
     }
 }
 
-wh_status_t wh_plant_drive(wh_plant_t *plant, const double axes[], uint32_t valves,
-                           char text[WH_PLANT_TEXT]) {
+wh_status_t wh_plant_move(wh_plant_t *plant, const wh_real_t q[], uint32_t valves, char text[WH_PLANT_TEXT]) {
     wh_command_t *command = &plant->command;
-    wh_real_t q[WH_AXES];
+    const size_t odd = find_not_finite(plant, q);
     text[0] = '\0';
-    const size_t odd = find_not_finite(plant, axes);
     if (odd < command->axis_count) {
-        return refuse(plant, odd, axes, WH_STATUS_NOT_FINITE, text);
-    }
-    for (size_t axis = 0; axis < command->axis_count; ++axis) {
-        q[axis] = wh_plant_axis_in(plant->layout, axis, axes[axis]);
+        return refuse(plant, odd, q, WH_STATUS_NOT_FINITE, text);
     }
     const wh_status_t status = wh_machine_check_travel(&plant->layout->machine, q);
     if (status != WH_OK) {
-        return refuse(plant, find_beyond(plant, q), axes, status, text);
+        return refuse(plant, find_beyond(plant, q), q, status, text);
     }
     look_for_jump(plant, q, text);
     memcpy(command->axes, q, command->axis_count * sizeof *q);
@@ -137,6 +133,15 @@ wh_status_t wh_plant_drive(wh_plant_t *plant, const double axes[], uint32_t valv
     plant->is_driven = true;
     plant->since = -1; /* the slice that is next counts as none */
     return WH_OK;
+}
+
+wh_status_t wh_plant_drive(wh_plant_t *plant, const double axes[], uint32_t valves,
+                           char text[WH_PLANT_TEXT]) {
+    wh_real_t q[WH_AXES];
+    for (size_t axis = 0; axis < plant->command.axis_count; ++axis) {
+        q[axis] = wh_plant_axis_in(plant->layout, axis, axes[axis]);
+    }
+    return wh_plant_move(plant, q, valves, text);
 }
 
 /* ------------------------------------------------------------------------------------------------- slices */

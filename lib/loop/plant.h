@@ -45,6 +45,9 @@ void wh_plant_open(wh_plant_t *plant, wh_sim_process_t *simulation);
  * and `text` says why. A jump is taken, and counted; `text` says it. Otherwise `text` is empty. */
 wh_status_t wh_plant_drive(wh_plant_t *plant, const double axes[], uint32_t valves, char text[WH_PLANT_TEXT]);
 
+/* Likewise in the library's units, mm and rad. */
+wh_status_t wh_plant_move(wh_plant_t *plant, const wh_real_t q[], uint32_t valves, char text[WH_PLANT_TEXT]);
+
 /* Plays the next slice, with the last numbers that were taken, publishes it, and tells its events. Returns
  * the simulator's status: that of a refusal leaves the slice unplayed. */
 wh_status_t wh_plant_step(wh_plant_t *plant);

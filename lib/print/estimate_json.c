@@ -121,6 +121,7 @@ static json_t *axis(const void *subject, size_t i) {
         }
         (void)wh_json_set(object, "shortest %g longest %g rms_s %g", limits->shortest, limits->longest,
                           limits->rms);
+        wh_json_put(object, "looks_simulated", json_boolean(wh_axis_moves_look_simulated(from)));
     }
     return object;
 }

@@ -210,11 +210,17 @@ static void print_remarks(const wh_printer_t *printer, const wh_move_table_t *ta
     const char *before = "\n";
     for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
         const wh_limits_estimate_t *limits = &table->axes[axis].estimate;
-        if (limits->set_aside > 0 || limits->reason[0] != '\0') {
+        const bool is_simulated = wh_axis_moves_look_simulated(&table->axes[axis]);
+        if (limits->set_aside > 0 || limits->reason[0] != '\0' || is_simulated) {
             fputs(before, printer->out);
             before = "";
         }
         print_aside(printer, &table->axes[axis], wh_table_axis_name(axis));
+        if (is_simulated) {
+            fprintf(printer->out,
+                    "%s: its times are those of one profile, rounded to 1 ms: they look simulated\n",
+                    wh_table_axis_name(axis));
+        }
         if (limits->reason[0] != '\0') {
             say(printer, wh_table_axis_name(axis), limits->status, limits->reason);
         }

@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 /* The most fields of a row; the longest message. */
-#define WH_ROWS_FIELDS 64
+#define WH_ROWS_FIELDS 1024
 #define WH_ROWS_MESSAGE 512
 
 /* How a file is read. All zero: commas, no comments. */
