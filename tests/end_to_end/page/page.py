@@ -60,6 +60,9 @@ class Served:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+        self.reader.join(5)
+        self.process.stdout.close()
+        self.process.stderr.close()
 
     def port(self):
         return int(self.place.rsplit(":", 1)[1])
