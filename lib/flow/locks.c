@@ -26,6 +26,7 @@ bool wh_flow_lock_pump(wh_flow_state_t *state, int32_t number, wh_flow_side_t si
         return false;
     }
     station->pump_to = side;
+    wh_flow_touch(state, number);
     station->pump_us = state->now_us + pump_us(state, number, side);
     station->pump_began_us = state->now_us;
     return true;

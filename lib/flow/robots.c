@@ -320,6 +320,7 @@ static void come_out(wh_flow_state_t *state, int32_t robot) {
     station->real.shutter = robot;
     station->real.shutting_us = state->now_us;
     station->busy_us = state->now_us + door->close_us;
+    wh_flow_touch(state, state->robots[robot].station);
     station->shut_us = door->is_real ? state->now_us : wh_flow_slice_us(state, station->busy_us);
 }
 

@@ -27,6 +27,7 @@ static void open_stations(wh_flow_state_t *state) {
             .pump_us = WH_FLOW_NEVER,
             .done_us = WH_FLOW_NEVER,
             .side = tool->stations[i].side,
+            .acts = tool->stations[i].is_lock || wh_flow_is_cleaned(&tool->stations[i]),
             .real = {.shutter = WH_FLOW_NONE, .work_wafer = WH_FLOW_NONE, .closed_us = -1}};
     }
 }

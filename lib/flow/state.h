@@ -41,6 +41,7 @@ typedef struct {
     int32_t wafers;
     int32_t accesses; /* picks, places and swaps that have ended */
     int32_t turned;   /* turns of its own list that have begun */
+    bool acts;        /* it is a lock, or cleaned by itself */
     bool has_due;     /* one of its places must be cleaned, and is not yet */
     bool is_aside;    /* as the last instant ended it was cleaned, pumped or had failed */
     int64_t
@@ -189,6 +190,11 @@ typedef struct wh_flow_state {
     bool is_relaxed;    /* nobody could go on: shipped rules wait for no fuller step now */
     char *cause;        /* why the flow ended early, or null; freed by wh_flow_state_close */
 } wh_flow_state_t;
+
+/* Times of the station have changed. */
+static inline void wh_flow_touch(wh_flow_state_t *state, int32_t station) {
+    state->stations[station].next_us = 0;
+}
 
 /* The tool's beginning. The tool and the plan must outlive the state; the plan must be finished. */
 void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan);

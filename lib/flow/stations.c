@@ -37,6 +37,7 @@ static bool is_last(const wh_flow_state_t *state, int32_t wafer) {
 static void plan_cleans(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[number];
     wh_flow_station_state_t *station = &state->stations[number];
+    wh_flow_touch(state, number);
     station->clean_us = station->idle_us = WH_FLOW_NEVER;
     station->has_due = false;
     for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
@@ -77,6 +78,7 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     at->done_us = lasts_us == 0 ? station->shut_us : begin_us + lasts_us;
     plan_own_cleans(state, number);
     if (lasts_us > 0 && at->done_us < station->done_us) {
+        wh_flow_touch(state, number);
         station->done_us = at->done_us;
     }
 }
@@ -184,6 +186,7 @@ void wh_flow_stations_end(wh_flow_state_t *state) {
         if (station->next_us > state->now_us) {
             continue;
         }
+        wh_flow_touch(state, i);
         if (!state->tool->stations[i].is_real) {
             end_doings(state, i);
         }
@@ -270,6 +273,7 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
 static void put_off(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[number];
     wh_flow_station_state_t *station = &state->stations[number];
+    wh_flow_touch(state, number);
     station->done_us = WH_FLOW_NEVER;
     for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
         const int32_t number_there = state->places[place].wafer;
@@ -306,6 +310,7 @@ static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     const int64_t until_us = down->for_us == WH_FLOW_FOR_EVER
                                  ? WH_FLOW_FOR_EVER
                                  : wh_flow_slice_us(state, state->now_us + down->for_us);
+    wh_flow_touch(state, down->station);
     station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
@@ -340,6 +345,9 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
         wh_flow_end_routes(state);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
+        if (!state->stations[i].acts) {
+            continue;
+        }
         if (is_any_clean_due(state, i)) {
             begin_cleans(state, i);
         }
@@ -382,9 +390,12 @@ int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
     const int64_t now_us = state->now_us;
     int64_t next_us = WH_FLOW_FOR_EVER, idle = WH_FLOW_FOR_EVER;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
-        const int64_t its_us = station_next(state, i);
+        const bool is_known = !state->outside && state->stations[i].next_us > now_us;
+        const int64_t its_us = is_known ? state->stations[i].next_us : station_next(state, i);
         next_us = its_us < next_us ? its_us : next_us;
-        idle = state->tool->stations[i].is_real ? idle : sooner(now_us, idle, state->stations[i].idle_us);
+        if (state->stations[i].acts && !state->tool->stations[i].is_real) {
+            idle = sooner(now_us, idle, state->stations[i].idle_us);
+        }
     }
     *idle_us = or_never(idle);
     next_us = sooner(now_us, next_us, state->next.start_us);

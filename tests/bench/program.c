@@ -13,6 +13,8 @@
 enum { RUNS = 41, FEW_RUNS = 5 };
 
 #define LOG "build/tests/bench/tool.log"
+#define PAGE "build/tests/bench/week.html"
+#define LOOP "tests/bench/loop.lua --counted --brief --set commands="
 
 /* The first number after `key` in a command's output; the command's own complaints are shown.
  * Negative: there is none. */
@@ -102,10 +104,8 @@ static double cost_of(const char *command) {
                            before.ru_stime.tv_usec);
 }
 
-/* How many times less a counted run costs than the full one, of 22 wafers in three modules. */
-static void time_counted(const char *row, double goal) {
-    static const char full[] =
-        "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null";
+/* How many times less a counted run costs than the full one. */
+static void time_counted(const char *row, const char *full, double goal) {
     double times[FEW_RUNS];
     char line[200];
     if (!bench_wanted(row)) {
@@ -120,17 +120,59 @@ static void time_counted(const char *row, double goal) {
     bench_figure(row, "x the full run", &spread, false, goal);
 }
 
+/* All instructions of a run, as valgrind counts them. */
+static double count_run(const char *run) {
+    char command[300], line[400], digits[40];
+    double count = 0;
+    (void)snprintf(command, sizeof command,
+                   "valgrind --tool=callgrind --callgrind-out-file=/dev/null build/waferhand run %s 2>&1 "
+                   ">/dev/null | grep refs:",
+                   run);
+    FILE *answer = popen(command, "r");
+    while (answer && fgets(line, sizeof line, answer)) {
+        size_t length = 0;
+        for (const char *c = strstr(line, "refs:"); c && *c && length + 1 < sizeof digits; ++c) {
+            if (*c >= '0' && *c <= '9') {
+                digits[length++] = *c;
+            }
+        }
+        digits[length] = '\0';
+        count = strtod(digits, NULL);
+    }
+    if (!answer || pclose(answer) != 0 || !(count > 0)) {
+        bench_differ(run, "a count of instructions");
+    }
+    return count;
+}
+
+/* The instructions that one more of them takes: `run` ends before their number. */
+static void count_each(const char *row, const char *run, int few, int many, double goal) {
+    char runs[2][200];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    if (system("command -v valgrind >/dev/null") != 0) {
+        bench_note("SKIPPED instructions: no valgrind");
+        return;
+    }
+    (void)snprintf(runs[0], sizeof runs[0], "%s%d", run, few);
+    (void)snprintf(runs[1], sizeof runs[1], "%s%d", run, many);
+    double each = (count_run(runs[1]) - count_run(runs[0])) / (many - few);
+    const bench_spread_t spread = bench_spread(&each, 1);
+    bench_figure(row, "instructions", &spread, true, goal);
+}
+
 #define FLOW "build/waferhand run tests/bench/flow.lua --set wafers=10000"
 #define SIMPY "PYTHONPATH=build/pypi python3 tests/bench/peer_simpy.py 10000"
 
-/* Two robots, two locks, six modules, all by times alone: the whole program, its table included. */
-static void time_flow(const char *row, double goal) {
+/* The whole program, its table or page included. */
+static void time_run_of(const char *row, const char *command, double goal) {
     double times[FEW_RUNS];
     if (!bench_wanted(row)) {
         return;
     }
     for (size_t i = 0; i < FEW_RUNS; ++i) {
-        times[i] = cost_of(FLOW " >/dev/null");
+        times[i] = cost_of(command);
     }
     const bench_spread_t spread = bench_spread(times, FEW_RUNS);
     bench_figure(row, "s", &spread, true, goal);
@@ -184,9 +226,17 @@ int main(int argc, char **argv) {
     time_run("run, real time", "01_transfer", RUNS, 5000);
     /* Two robots; collisions between all parts and the smallest gaps are checked. */
     time_run("tool, real time", "27_tool", FEW_RUNS, 300);
-    time_counted("counted, a long series", 5);
-    time_flow("flow, 10,000 wafers", 0.2);
-    race_simpy("flow, against SimPy", 5);
+    time_counted("counted, a long series",
+                 "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null", 5);
+    time_counted("counted, passive pads",
+                 "build/waferhand run tests/bench/hour.lua --set seconds=900 --brief >/dev/null", 1.5);
+    count_each("counted, a command", LOOP, 100, 300, 0.9e6);
+    /* Two robots, two locks, six modules, all by times alone. */
+    time_run_of("flow, 10,000 wafers", FLOW " >/dev/null", 0.2);
+    count_each("flow, a wafer", "tests/bench/flow.lua --brief --set wafers=", 1000, 3000, 80e3);
+    race_simpy("flow, against SimPy", 6);
+    time_run_of("a week, its page", "build/waferhand run tests/bench/week.lua --report " PAGE " >/dev/null",
+                10);
     time_reading("csv, of the tool's log", "csv -o", 4);
     time_reading("report, of the tool's log", "report -o", 0);
     count_step("step, 2 wafers", "step indexed 2 idle", 400);

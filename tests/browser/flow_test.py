@@ -161,6 +161,26 @@ class Flow(unittest.TestCase):
         self.assertLess(taken, 4000)
         self.assertIn("998 of 2000 stays in P1, P2 are beyond the window. The 20 nearest are listed.", self.page.text("#gaps"))
 
+    def test_a_day_of_a_tool(self):
+        """Some 1,400 wafers: a small page that opens and zooms without a pause; what lies too close is told, and is there in a zoom."""
+        page = FOLDER / "day.html"
+        subprocess.run([PROGRAM, "run", ROOT / "tests/bench/week.lua", "--set", "seconds=86400", "-o", page], check=True, stdout=subprocess.DEVNULL)
+        self.assertLess(page.stat().st_size, 1e6)
+        work, _ = self.page.opened(page, 3, 6000)
+        self.assertLess(work, 3)
+        spent = self.page.js("""return [[0, 86400], [1000, 4600], [43200, 43500], [0, 86400]].map((times) => {
+            const begin = performance.now();
+            Waferhand.clock.setWindow(...times);
+            if (Waferhand.clock.flush) { Waferhand.clock.flush(); }
+            return performance.now() - begin;
+        })""")
+        self.assertLess(max(spent), 500)
+        self.page.settle()
+        self.assertIn("A bar is as high as its share of the time", self.page.text("#gantt"))
+        self.page.js("Waferhand.clock.setWindow(43200, 43500)")
+        self.page.settle()
+        self.assertFalse(self.page.js("return Array.from(document.querySelectorAll('#gantt .banded')).some((note) => !note.hidden)"))
+
     def test_parts_that_lack(self):
         document, _ = documents.example(COATER)
         for name in ("gaps", "visits", "lots", "textbook", "busiest", "ways", "windows", "doings"):
