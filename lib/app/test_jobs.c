@@ -23,7 +23,7 @@ typedef struct {
     uint64_t expectations, errors;
     double simulated_s;
     uint64_t hash;
-    bool is_unlooked, is_timed, is_cut;
+    bool is_unlooked, is_timed, has_timed, is_cut;
     char reason[WH_SANDBOX_MESSAGE_BYTES + 80];
     char never_came[NEVER_CAME_BYTES]; /* empty: all faults came */
 } told_t;
@@ -94,6 +94,7 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
     tell_never_came(&run.record, &told);
     told.is_timed = told.is_unlooked && wh_record_is_timed(&run.record);
+    told.has_timed = outcome != WH_RUN_BAD_INPUT && run.record.times_alone;
     told.is_cut = outcome != WH_RUN_BAD_INPUT && run.record.flow && wh_flow_is_cut(run.record.flow);
     for (size_t i = 0; i < WH_TEST_OUTPUTS; ++i) {
         const char *output = crew->options->outputs[i];
@@ -210,6 +211,7 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
         result->is_unlooked = told->is_unlooked;
         result->never_came = told->never_came[0] != '\0' ? wh_text_copy(told->never_came) : NULL;
         result->is_timed = told->is_timed;
+        result->has_timed = told->has_timed;
         result->is_cut = told->is_cut;
     }
 }

@@ -232,13 +232,13 @@ static void begin(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t 
 /* The wafer of the place lies there, well or not, or is away. */
 static void see_own(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot,
                     const wh_clock_seen_t *seen, int64_t now_us, const wh_clock_teller_t *teller) {
-    const bool lies = place->wafer == seen->wafer;
+    const bool lies = place->wafer == seen->wafer && !seen->is_lifted;
     if ((!lies || seen->is_bad) && !place->is_away) {
         lift(place, slot, now_us, teller);
         place->lifted_us = now_us;
     }
     place->is_away = !lies;
-    if (!lies && (!seen->keeps || seen->wafer != WH_FLOW_NONE)) {
+    if (place->wafer != seen->wafer && (!seen->keeps || seen->wafer != WH_FLOW_NONE)) {
         leave(of, place, slot, now_us, teller);
     }
 }

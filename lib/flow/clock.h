@@ -93,6 +93,7 @@ typedef struct {
     int32_t wafer;   /* that lies in it, well or not; WH_FLOW_NONE: none */
     bool is_bad;     /* so that no process may begin */
     bool keeps;      /* the place's own wafer does not lie in it, and has not left the station */
+    bool is_lifted;  /* the wafer that seems to lie in it is on a blade */
     bool is_awaited; /* a command that was not refused brings a wafer: the idle time is over */
 } wh_clock_seen_t;
 

@@ -39,6 +39,24 @@ static void pass_on(void *context, const wh_flow_state_t *state, int64_t to_us) 
 
 /* ----------------------------------------------------------------------------------------------- instants */
 
+static void end_holds(const wh_flow_state_t *state) {
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
+        const wh_flow_robot_state_t *robot = &state->robots[r];
+        if (robot->held_us > 0 && robot->held_us == state->now_us) {
+            const wh_flow_event_t held = {.kind = WH_FLOW_EVENT_HELD,
+                                          .begin_us = robot->held_began_us,
+                                          .end_us = state->now_us,
+                                          .robot = r,
+                                          .wafer = WH_FLOW_NONE,
+                                          .other = WH_FLOW_NONE,
+                                          .place = WH_FLOW_NONE,
+                                          .station = WH_FLOW_NONE,
+                                          .from = WH_FLOW_NONE};
+            wh_flow_tell(state, &held);
+        }
+    }
+}
+
 static void end_all(wh_flow_state_t *state) {
     wh_flow_stations_end(state);
     if (state->outside) {
@@ -50,6 +68,7 @@ static void end_all(wh_flow_state_t *state) {
             wh_flow_robot_end(state, r);
         }
     }
+    end_holds(state);
     if (state->outside) {
         wh_flow_end_told(state);
         state->outside->look(state->outside->context, state);
@@ -69,6 +88,9 @@ static bool begin_order(wh_flow_state_t *state, int32_t robot, const wh_flow_ord
 /* A free robot is asked, one in front of its place places. True if something began. */
 static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                         uint64_t *asked) {
+    if (state->robots[robot].held_us > state->now_us) {
+        return false;
+    }
     if (state->robots[robot].action == WH_FLOW_WAITING) {
         return wh_flow_robot_place(state, robot);
     }
@@ -119,8 +141,9 @@ static int64_t next_instant(const wh_flow_state_t *state) {
     int64_t idle_us = WH_FLOW_NEVER;
     int64_t next_us = wh_flow_stations_next(state, &idle_us);
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        const int64_t until_us = state->robots[r].until_us;
+        const int64_t until_us = state->robots[r].until_us, held_us = state->robots[r].held_us;
         next_us = until_us > state->now_us && until_us < next_us ? until_us : next_us;
+        next_us = held_us > state->now_us && held_us < next_us ? held_us : next_us;
     }
     return next_us != WH_FLOW_NEVER && idle_us < next_us ? idle_us : next_us;
 }

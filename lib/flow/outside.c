@@ -44,9 +44,16 @@ static void learn_move(wh_flow_tool_t *tool, int32_t robot, int32_t from, int32_
     *back = *back == 0 ? us : *back;
 }
 
+bool wh_flow_is_played(const wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    return state->tool->robots[robot].is_real ||
+           (at->action == WH_FLOW_OPENING &&
+            state->tool->doors[wh_flow_of(state->tool, robot, at->station)].is_real);
+}
+
 void wh_flow_learn(wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
-    if (!state->outside || !state->tool->robots[robot].is_real) {
+    if (!state->outside || !wh_flow_is_played(state, robot)) {
         return;
     }
     wh_flow_tool_t *tool = state->outside->tool;
@@ -103,8 +110,7 @@ void wh_flow_end_told(wh_flow_state_t *state) {
             state->wafers[station->real.work_wafer].done_us =
                 done_us > state->now_us ? done_us : state->now_us + 1;
         }
-        if (station->user != WH_FLOW_NONE && state->tool->robots[station->user].is_real &&
-            station->busy_us <= state->now_us) {
+        if (station->user != WH_FLOW_NONE && station->busy_us <= state->now_us) {
             station->busy_us = state->now_us + 1;
         }
     }
@@ -157,8 +163,8 @@ bool wh_flow_is_real_busy(const wh_flow_state_t *state) {
     }
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
         const wh_flow_action_t action = state->robots[r].action;
-        is_busy = is_busy ||
-                  (state->tool->robots[r].is_real && action != WH_FLOW_IDLE && action != WH_FLOW_WAITING);
+        is_busy = is_busy || (wh_flow_is_played(state, (int32_t)r) && action != WH_FLOW_IDLE &&
+                              action != WH_FLOW_WAITING);
     }
     return is_busy;
 }

@@ -1,5 +1,6 @@
 /* Robots, doors and stations that are real: somebody else plays them, slice by slice. The engine
- * begins their actions, as it does those of timed ones. It is told their ends here.
+ * begins their actions, as it does those of timed ones. It is told their ends here. Timed robots may stand
+ * among them: their actions end by themselves, with a slice, but for the opening of real doors.
  *
  * Nobody knows beforehand how long they take. Where a rule asks when a placing could begin, a robot takes as
  * long as the last time: for this pick, placing or swap at this station, for this pair of stations, for this
@@ -47,7 +48,10 @@ void wh_flow_see_station(wh_flow_state_t *state, int32_t station, const wh_flow_
 
 /* ---- for the engine */
 
-/* Keeps how long the action of a real robot took that has just ended. */
+/* True if somebody else plays what the robot does now: it is real, or opens a real door. */
+bool wh_flow_is_played(const wh_flow_state_t *state, int32_t robot);
+
+/* Keeps how long an action took that somebody else has played, and that has just ended. */
 void wh_flow_learn(wh_flow_state_t *state, int32_t robot);
 
 /* A wafer was placed. True if the station is real, or something is done with the wafer there: its end will be

@@ -41,7 +41,8 @@ static const wh_flow_path_word_t words_of_events[] = {
     [WH_FLOW_EVENT_SWAP] = WH_FLOW_PATH_SWAP,   [WH_FLOW_EVENT_PROCESS] = WH_FLOW_PATH_PROCESS,
     [WH_FLOW_EVENT_CLEAN] = WH_FLOW_PATH_CLEAN, [WH_FLOW_EVENT_PUMP] = WH_FLOW_PATH_PUMP,
     [WH_FLOW_EVENT_DOWN] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_STAY] = WH_FLOW_PATH_WAIT,
-    [WH_FLOW_EVENT_SHUT] = WH_FLOW_PATH_DOOR,   [WH_FLOW_EVENT_LEFT] = WH_FLOW_PATH_WAIT};
+    [WH_FLOW_EVENT_SHUT] = WH_FLOW_PATH_DOOR,   [WH_FLOW_EVENT_LEFT] = WH_FLOW_PATH_WAIT,
+    [WH_FLOW_EVENT_HELD] = WH_FLOW_PATH_DOWN};
 
 static void add_part(path_t *path, wh_flow_path_word_t word, int32_t robot, int32_t station, int64_t us) {
     for (size_t i = 0; i < path->count; ++i) {
@@ -402,8 +403,9 @@ static cause_t cause_of(const path_t *path, const wh_flow_event_t *event) {
     if (event->kind == WH_FLOW_EVENT_CLEAN) {
         return cause_of_clean(path, event);
     }
-    return event->kind == WH_FLOW_EVENT_DOWN ? (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false}
-                                             : cause_of_choice(path, event, 0);
+    const bool is_given = event->kind == WH_FLOW_EVENT_DOWN || event->kind == WH_FLOW_EVENT_HELD;
+    return is_given ? (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false}
+                    : cause_of_choice(path, event, 0);
 }
 
 /* Goes back from the begin of an event to what let it begin: adds the time between, and what that took

@@ -21,9 +21,11 @@ typedef struct {
     bool is_mapped; /* a real robot maps the station before it takes the first one */
 } wh_flow_lot_t;
 
+/* A station that fails, or a robot that is held: it ends what it has begun, and begins nothing meanwhile. */
 typedef struct {
     int32_t station;
-    int64_t at_us, for_us; /* for_us: WH_FLOW_FOR_EVER if it never works again */
+    int64_t at_us, for_us; /* for_us: WH_FLOW_FOR_EVER if it never works again; of a station alone */
+    int32_t robot;         /* WH_FLOW_NONE: it is a station */
 } wh_flow_down_t;
 
 typedef enum { WH_FLOW_TRANSFER, WH_FLOW_KEEP, WH_FLOW_BRING, WH_FLOW_SWAP, WH_FLOW_PUMP } wh_flow_do_t;
@@ -84,10 +86,10 @@ typedef int (*wh_flow_own_rule_t)(void *context, const struct wh_flow_state *sta
 
 /* Something that goes wrong on the way. */
 typedef struct {
-    enum { WH_FLOW_LATE, WH_FLOW_FAILS } what; /* a stay beyond a window; a station fails */
+    enum { WH_FLOW_LATE, WH_FLOW_FAILS } what; /* a stay beyond a window; a station fails, or a robot */
     int32_t robot, wafer;                      /* of a stay: who takes which; else WH_FLOW_NONE */
-    int32_t station;
-    int64_t us; /* beyond the window; how long it will be down */
+    int32_t station;                           /* WH_FLOW_NONE: the robot is held */
+    int64_t us;                                /* beyond the window; how long it will be down */
 } wh_flow_problem_t;
 
 /* Hears of each problem at its instant. Returns null, or why the flow ends, by malloc. */

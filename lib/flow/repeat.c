@@ -30,7 +30,13 @@ static bool is_any_under_way(const wh_flow_state_t *state) {
     return found;
 }
 
-/* True if something ends or comes without a robot: a process, a clean, a failure, a lot, a start. */
+static bool is_any_in(const wh_flow_state_t *state, const wh_flow_station_state_t *station) {
+    return is_ahead(state, station->done_us) || is_ahead(state, station->clean_us) ||
+           is_ahead(state, station->idle_us) || is_ahead(state, station->down_us);
+}
+
+/* True if something ends or comes without a robot: a process, a clean, a failure, a lot, a start, the
+ * time for which a robot is held. */
 static bool is_any_to_come(const wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     bool found =
@@ -38,9 +44,10 @@ static bool is_any_to_come(const wh_flow_state_t *state) {
         (state->next.lot < plan->lot_count && is_ahead(state, plan->lots[state->next.lot].arrives_us)) ||
         state->next.down < plan->down_count;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
-        const wh_flow_station_state_t *station = &state->stations[i];
-        found = found || is_ahead(state, station->done_us) || is_ahead(state, station->clean_us) ||
-                is_ahead(state, station->idle_us) || is_ahead(state, station->down_us);
+        found = found || is_any_in(state, &state->stations[i]);
+    }
+    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+        found = found || is_ahead(state, state->robots[r].held_us);
     }
     return found;
 }

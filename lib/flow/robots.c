@@ -6,14 +6,20 @@
 #include "stations.h"
 #include "transfer.h"
 
-/* A real robot's action ends when somebody tells it. */
+/* When an action of a timed robot ends. Where slices are stepped a wafer changes its place with one. */
+static int64_t end_of(const wh_flow_state_t *state, wh_flow_action_t action, int64_t for_us) {
+    const bool is_access = action == WH_FLOW_PICKING || action == WH_FLOW_PLACING || action == WH_FLOW_SWAPS;
+    const int64_t least_us = state->outside && is_access ? state->outside->slice_us : 0;
+    return wh_flow_slice_us(state, state->now_us + (for_us > least_us ? for_us : least_us));
+}
+
+/* Somebody tells the end of what is real: an action of a real robot, or the opening of a real door. */
 static void act(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action, int64_t for_us) {
     wh_flow_robot_state_t *at = &state->robots[robot];
     at->action = action;
     at->since_us = state->now_us;
-    at->is_begun = state->tool->robots[robot].is_real;
-    at->until_us = for_us == WH_FLOW_NEVER || at->is_begun ? WH_FLOW_NEVER
-                                                           : wh_flow_slice_us(state, state->now_us + for_us);
+    at->is_begun = wh_flow_is_played(state, robot);
+    at->until_us = for_us == WH_FLOW_NEVER || at->is_begun ? WH_FLOW_NEVER : end_of(state, action, for_us);
 }
 
 static void rest(wh_flow_state_t *state, int32_t robot) {

@@ -98,6 +98,7 @@ typedef struct {
     int32_t mark;         /* backward: where the round goes on; lists: the next line */
     wh_flow_order_t wish; /* the first answer of the rule when it was asked last */
     bool has_wish;
+    int64_t held_us, held_began_us; /* until then, and since when, it begins nothing; 0: it is not held */
     /* Real ones: the action has begun, and nobody has taken it up yet; it has ended, and that was told. */
     bool is_begun, is_ended;
 } wh_flow_robot_state_t;
@@ -115,6 +116,7 @@ typedef enum {
     WH_FLOW_EVENT_STAY, /* of what is done in a place, up to the pick */
     WH_FLOW_EVENT_SHUT, /* a real door */
     WH_FLOW_EVENT_LEFT, /* a stay in a real station: until the wafer was lifted */
+    WH_FLOW_EVENT_HELD, /* a robot began nothing */
     WH_FLOW_EVENT_ENDS, /* a route ends where its wafer lies, because of stations that have failed */
 } wh_flow_event_kind_t;
 

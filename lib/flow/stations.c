@@ -305,7 +305,21 @@ static void hold_back(wh_flow_state_t *state, int32_t number) {
     }
 }
 
+/* Whatever it does comes to its end. */
+static void begin_hold(wh_flow_state_t *state, const wh_flow_down_t *down) {
+    wh_flow_robot_state_t *robot = &state->robots[down->robot];
+    const int64_t until_us = wh_flow_slice_us(state, state->now_us + down->for_us);
+    robot->held_began_us = robot->held_us > state->now_us ? robot->held_began_us : state->now_us;
+    robot->held_us = until_us > robot->held_us ? until_us : robot->held_us;
+    const wh_flow_problem_t held = {WH_FLOW_FAILS, down->robot, WH_FLOW_NONE, WH_FLOW_NONE, down->for_us};
+    wh_flow_tell_problem(state, &held);
+}
+
 static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
+    if (down->robot != WH_FLOW_NONE) {
+        begin_hold(state, down);
+        return;
+    }
     wh_flow_station_state_t *station = &state->stations[down->station];
     const int64_t until_us = down->for_us == WH_FLOW_FOR_EVER
                                  ? WH_FLOW_FOR_EVER

@@ -120,6 +120,7 @@ static void add_robot(snapshot_t *into, const wh_flow_steadily_t *steadily, cons
     add(into, robot->mark);
     add(into, robot->arm);
     add_ahead(into, state, robot->until_us);
+    add_ahead(into, state, robot->held_us);
     add_place(into, steadily, state, robot->from);
     add_place(into, steadily, state, robot->to);
     for (size_t arm = 0; arm < 2; ++arm) {

@@ -138,7 +138,7 @@ char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                          size_t count, int32_t *period, int64_t *cycle_us) {
     char text[400];
     double least_us;
-    const ends_t ends = {ends_us, count, tool->robot_count > 0 && tool->robots[0].is_real};
+    const ends_t ends = {ends_us, count, wh_flow_has_real(tool)};
     *period = find_period(&ends, cycle_us);
     if (*period == 0) {
         return tell_no_period(&ends);

@@ -143,6 +143,24 @@ int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name) {
     return WH_FLOW_NONE;
 }
 
+bool wh_flow_has_real(const wh_flow_tool_t *tool) {
+    bool is_any = false;
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        is_any = is_any || tool->robots[r].is_real;
+    }
+    return is_any;
+}
+
+bool wh_flow_is_timed_at(const wh_flow_tool_t *tool, int32_t station, int32_t *robot) {
+    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
+        if (!tool->robots[r].is_real && tool->serves[wh_flow_of(tool, r, station)]) {
+            *robot = r;
+            return true;
+        }
+    }
+    return false;
+}
+
 static uint64_t hash_times(uint64_t hash, const int64_t times_us[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         hash = wh_hash_word(hash, (uint64_t)times_us[i]);

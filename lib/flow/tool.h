@@ -59,11 +59,13 @@ typedef struct {
     int32_t at;         /* the station in front of which it stands at the beginning; real: or WH_FLOW_NONE */
     bool is_at_assumed; /* nobody says where: at the first one that it serves */
     bool is_real;
+    int32_t number; /* in a cell with axes: among the layout's robots, or its timed ones */
 } wh_flow_robot_t;
 
 typedef struct {
     int64_t open_us, close_us;
     bool is_real;
+    int32_t number; /* real: the layout's */
 } wh_flow_door_t;
 
 /* Step 0 of a route is where the lot lies at first; its steps count from 1 on. */
@@ -139,6 +141,12 @@ static inline int64_t wh_flow_move_us(const wh_flow_tool_t *tool, int32_t robot,
                ? 0
                : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
 }
+
+/* True if any robot of the tool is real. */
+bool wh_flow_has_real(const wh_flow_tool_t *tool);
+
+/* True if a robot that is times alone serves the station, and its number then. */
+bool wh_flow_is_timed_at(const wh_flow_tool_t *tool, int32_t station, int32_t *robot);
 
 /* True if a robot of the one side may use what is for the other. */
 static inline bool wh_flow_sides_agree(wh_flow_side_t a, wh_flow_side_t b) {

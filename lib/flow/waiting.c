@@ -57,7 +57,7 @@ static wh_flow_robot_class_t wishing(const wh_flow_state_t *state, int32_t robot
     }
 }
 
-wh_flow_robot_class_t wh_flow_robot_class(const wh_flow_state_t *state, int32_t robot) {
+static wh_flow_robot_class_t doing(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     switch (at->action) {
     case WH_FLOW_MOVING:
@@ -78,4 +78,10 @@ wh_flow_robot_class_t wh_flow_robot_class(const wh_flow_state_t *state, int32_t 
     default:
         return wishing(state, robot);
     }
+}
+
+wh_flow_robot_class_t wh_flow_robot_class(const wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const bool rests = at->action == WH_FLOW_IDLE || at->action == WH_FLOW_WAITING;
+    return rests && at->held_us > state->now_us ? WH_FLOW_ROBOT_WAITS_DOWN : doing(state, robot);
 }

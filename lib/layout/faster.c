@@ -9,9 +9,10 @@
 /* One of the mechanisms and stations: the first of these that is not WH_NONE; none: the chucks. */
 typedef struct {
     int32_t robot, gripper, door, station;
+    int32_t timed; /* a robot that is times alone beside robots with axes */
 } paced_t;
 
-static const paced_t nothing = {WH_NONE, WH_NONE, WH_NONE, WH_NONE};
+static const paced_t nothing = {WH_NONE, WH_NONE, WH_NONE, WH_NONE, WH_NONE};
 
 static bool has_chuck(const wh_machine_t *machine) {
     bool has = false;
@@ -82,6 +83,10 @@ static size_t find(const wh_layout_t *layout, size_t wanted, paced_t *found) {
             count(&number, wanted, &one, found);
         }
     }
+    one = nothing;
+    for (one.timed = 0; layout->timed && one.timed < (int32_t)layout->timed->robot_count; ++one.timed) {
+        count(&number, wanted, &one, found);
+    }
     return number;
 }
 
@@ -98,6 +103,7 @@ void wh_layout_name_paced(const wh_layout_t *layout, size_t i, char name[WH_LAYO
         of.robot != WH_NONE     ? (tool ? tool->robots[of.robot].name : layout->robots[of.robot].name)
         : of.gripper != WH_NONE ? layout->grippers[of.gripper].name
         : of.door != WH_NONE    ? layout->door_list[of.door].name
+        : of.timed != WH_NONE   ? layout->timed->robots[of.timed].name
         : of.station != WH_NONE ? (tool ? tool->stations[of.station].name : layout->stations[of.station].name)
                                 : "chucks";
     (void)snprintf(name, WH_LAYOUT_PACED_BYTES, "%s", text);
@@ -168,6 +174,8 @@ void wh_layout_hasten(wh_layout_t *layout, size_t i, double share) {
         hasten(&layout->machine.mounts[of.gripper].limits, share);
     } else if (of.door != WH_NONE) {
         hasten_axis(&layout->machine, wh_machine_door_axis(&layout->machine, (size_t)of.door), share);
+    } else if (of.timed != WH_NONE) {
+        wh_flow_shorten(layout->timed, of.timed, WH_FLOW_NONE, (int32_t)lround(1e6 * share));
     } else if (of.station != WH_NONE) {
         hasten_station(layout, of.station, share);
     } else {

@@ -44,5 +44,11 @@ const wh_reader_field_t wh_layout_timed_by_fields[] = {
     {"door", "number|waferhand.timed_door", "s, on this robot's side", false},
     END};
 
+/* In a cell with axes. */
+const wh_reader_field_t wh_layout_timed_way_fields[] = {
+    {"side", WORD, "of a load lock: where it comes", false, APART_WORD(ASKED, wh_flow_side_words)},
+    {"door", "string", "the door that opens for it, by name", false, .otherwise = "none"},
+    END};
+
 const wh_reader_field_t wh_layout_timed_door_fields[] = {
     {"open", NUMBER, "s", true, SECONDS(ASKED)}, {"close", NUMBER, "s", true, SECONDS(ASKED)}, END};

@@ -92,6 +92,19 @@ int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robo
     return at->by ? at->by[robot].door : at->door;
 }
 
+bool wh_layout_is_shared(const wh_layout_t *layout) {
+    return layout->robot_count > 1 || layout->timed;
+}
+
+bool wh_layout_is_served(const wh_layout_t *layout, size_t station) {
+    const wh_layout_approach_t *by = layout->stations[station].by;
+    bool is_any = !by || !layout->timed;
+    for (size_t r = 0; by && r < layout->robot_count; ++r) {
+        is_any = is_any || by[r].serves;
+    }
+    return is_any;
+}
+
 int32_t wh_layout_first_gripper(const wh_layout_t *layout, size_t robot) {
     size_t g = 0;
     while (layout->grippers[g].station != WH_NONE || layout->machine.mounts[g].robot != robot) {

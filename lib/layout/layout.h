@@ -22,6 +22,9 @@
 #define WH_LAYOUT_ROBOTS (WH_AXES / WH_ROBOT_AXES)
 #define WH_LAYOUT_ARMS WH_WORLD_ARMS
 
+/* The most robots that are times alone beside robots with axes. */
+#define WH_LAYOUT_TIMED 16
+
 /* The most wafers, stations, and slots of a station that a layout may have. */
 #define WH_LAYOUT_WAFERS 1000000
 #define WH_LAYOUT_STATIONS 1000
@@ -251,7 +254,10 @@ typedef struct {
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
     bool axes_untold;     /* made of a message, which tells what an axis moves only for doors */
     size_t robot_count;
-    wh_layout_robot_t *robots;           /* sorted by name */
+    wh_layout_robot_t *robots; /* sorted by name */
+    /* Robots that are times alone beside these: their times, with the stations as here; null: there are
+     * none. */
+    wh_flow_tool_t *timed;
     wh_carrier_t carrier;                /* the first one's, unless machine.carrier is null */
     wh_elbow_t elbow;                    /* the first one's */
     wh_world_arm_t arms[WH_LAYOUT_ARMS]; /* robot by robot: see arms.h */
@@ -314,6 +320,12 @@ wh_limits_t wh_layout_loaded(const wh_layout_t *layout, size_t gripper);
 
 /* True if there is such a limit for any gripper. */
 bool wh_layout_has_loaded(const wh_layout_t *layout);
+
+/* True if stations say by whom they are served: there are several robots, timed ones among them. */
+bool wh_layout_is_shared(const wh_layout_t *layout);
+
+/* True if a robot with axes serves the station; elsewhere `by` may name timed ones alone. */
+bool wh_layout_is_served(const wh_layout_t *layout, size_t station);
 
 /* True for a gripper that is the pins beside a prealigner's chuck; true for one that is a flipper's clamp;
  * and the pins of a station, or WH_NONE. */

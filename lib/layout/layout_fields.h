@@ -98,5 +98,6 @@ extern const wh_reader_field_t wh_layout_timed_robot_fields[];
 extern const wh_reader_field_t wh_layout_timed_station_fields[];
 extern const wh_reader_field_t wh_layout_timed_by_fields[];
 extern const wh_reader_field_t wh_layout_timed_door_fields[];
+extern const wh_reader_field_t wh_layout_timed_way_fields[];
 
 #endif

@@ -269,6 +269,18 @@ static uint64_t hash_vias(uint64_t hash, const wh_layout_t *layout) {
     return hash;
 }
 
+/* Hashes the robots that are times alone, and the doors through which they come. */
+static uint64_t hash_timed(uint64_t hash, const wh_flow_tool_t *tool) {
+    if (!tool) {
+        return hash;
+    }
+    hash = wh_flow_tool_hash(tool, wh_hash_text(hash, "timed"));
+    for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
+        hash = wh_hash_int(hash, tool->doors[i].is_real ? tool->doors[i].number : WH_NONE);
+    }
+    return hash;
+}
+
 /* Recordings and messages carry this hash: new fields go to the end, and only if they differ from the
  * default. */
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
@@ -304,5 +316,6 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     }
     hash = hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
     hash = wh_layout_hash_ports(layout, wh_layout_hash_times(layout, hash));
+    hash = hash_timed(hash, layout->timed);
     return layout->patterns ? wh_hash_word(wh_hash_text(hash, "patterns"), layout->patterns_hash) : hash;
 }

@@ -31,11 +31,11 @@ static size_t index_of(const wh_layout_t *layout, const wh_station_t *station) {
 
 /* With several robots the one that serves the station comes in its own way. */
 static void turn_in(const wh_layout_t *layout, const wh_station_t *station, wh_pose_t *base_from_slot) {
-    for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
+    for (size_t s = 0; s < layout->station_count; ++s) {
         const wh_layout_station_t *of = &layout->stations[s];
-        const wh_layout_approach_t *by = &of->by[layout->machine.mounts[of->effector].robot];
-        if (station == &layout->places[s] && by->is_turned) {
-            base_from_slot->R = by->R;
+        const size_t robot = layout->machine.mounts[of->effector].robot;
+        if (of->by && station == &layout->places[s] && of->by[robot].is_turned) {
+            base_from_slot->R = of->by[robot].R;
         }
     }
 }

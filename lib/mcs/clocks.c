@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../script/wh_module_values.h"
+#include "flow_played.h"
 #include "ports.h"
 
 /* --------------------------------------------------------------------------------------------- setting up */
@@ -80,6 +81,7 @@ static bool is_closed(const struct wh_clocks *clocks, const wh_clocked_t *of) {
     for (size_t r = 0; r < WH_MCS_ROBOTS; ++r) {
         is_free = is_free && clocks->state->inside[r] != of->station;
     }
+    is_free = is_free && !wh_flow_timed_use(clocks->mcs, of->station, 0).is_inside;
     return is_free && find_open_door(clocks->mcs, of->times->doors) == WH_NONE;
 }
 
@@ -141,10 +143,19 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
     }
 }
 
+void wh_mcs_clocks_look(const wh_mcs_t *mcs, int32_t station) {
+    struct wh_clocks *clocks = mcs->clocks;
+    const int32_t number = clocks ? clocks->by_station[station] : WH_NONE;
+    if (number != WH_NONE) {
+        look(clocks, (size_t)number, &mcs->state, WH_NONE);
+    }
+}
+
 void wh_mcs_clocks_send(wh_mcs_t *mcs) {
     if (mcs->clocks && mcs->clocks->ports) {
         wh_ports_send(mcs->clocks->ports, &mcs->command);
     }
+    wh_flow_timed_send(mcs);
 }
 
 int64_t wh_mcs_clocks_quiet(const wh_mcs_t *mcs) {
@@ -182,7 +193,7 @@ void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices) {
 
 void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     const wh_layout_t *real = mcs->real;
-    if (!wh_layout_takes_time(real) && !wh_layout_has_ports(real)) {
+    if (!wh_layout_takes_time(real) && !wh_layout_has_ports(real) && !real->timed) {
         return;
     }
     struct wh_clocks *clocks = lua_memory(L, sizeof *clocks);

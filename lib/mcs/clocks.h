@@ -98,7 +98,11 @@ bool wh_mcs_is_pumping(const wh_mcs_t *mcs, int32_t station);
 /* True if the station is no load port, or no step runs there. */
 bool wh_mcs_does_port_stand(const wh_mcs_t *mcs, int32_t station);
 
-/* Adds to the command that goes out next the wafers that come and go with carriers. */
+/* Looks at the station once more in this slice: a robot that is times alone has begun something in it. */
+void wh_mcs_clocks_look(const wh_mcs_t *mcs, int32_t station);
+
+/* Adds to the command that goes out next the wafers that come and go with carriers, and with robots that are
+ * times alone. */
 void wh_mcs_clocks_send(wh_mcs_t *mcs);
 
 /* At the end of a run: stays beyond windows of wafers that still lie there, and handshakes that failed. */

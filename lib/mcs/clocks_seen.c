@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "clocks.h"
+#include "flow_played.h"
 
 /* A wafer that lies nowhere near its slot is out of the cell, mm: see wafer_missing. */
 #define OUT_OF_THE_CELL 1e4
@@ -121,8 +122,7 @@ static bool keeps(const struct wh_clocks *clocks, const wh_clocked_t *of, const 
     return distance_of(&place) < OUT_OF_THE_CELL;
 }
 
-static bool is_awaited(const struct wh_clocks *clocks, size_t place) {
-    bool is_any = false;
+static bool is_awaited(const struct wh_clocks *clocks, size_t place, bool is_any) {
     for (size_t r = 0; r < WH_MCS_ROBOTS; ++r) {
         is_any = is_any || clocks->state->bringing[r] == (int32_t)place;
     }
@@ -135,7 +135,9 @@ void wh_clocks_see_places(struct wh_clocks *clocks, const wh_clocked_t *of, cons
         const int32_t wafer = clocks->places[i].wafer;
         const bool may_keep = wafer != WH_NONE && wafer != clocks->seen[i].wafer;
         clocks->seen[i].keeps = may_keep && keeps(clocks, of, &state->wafers[wafer], out);
-        clocks->seen[i].is_awaited = is_awaited(clocks, i);
+        const wh_flow_use_t use = wh_flow_timed_use(clocks->mcs, of->station, (int32_t)(i - of->first));
+        clocks->seen[i].is_lifted = use.takes;
+        clocks->seen[i].is_awaited = is_awaited(clocks, i, use.brings);
     }
 }
 

@@ -60,13 +60,16 @@ const wh_layout_class_t wh_flow_classes[] = {
     {"timed_station", "A station of such a cell.", wh_layout_timed_station_fields},
     {"timed_by", "How one of several robots comes to it.", wh_layout_timed_by_fields},
     {"timed_door", "Times of a door.", wh_layout_timed_door_fields},
+    {"timed_way", "How a robot that is times alone comes to a station of a cell with axes.",
+     wh_layout_timed_way_fields},
     {"pump", "Times of a load lock.", wh_layout_pump_fields},
     {"flow", "Lots along their routes.", wh_flow_fields},
     {"lot", "Wafers that arrive together.", wh_flow_lot_fields},
     {"step", "One station of a route, or parallel ones, by numbers from 1.", wh_flow_step_fields},
     {"route", "Steps by numbers from 1: a station's name or a waferhand.step.", wh_flow_route_fields},
     {"lists", "Each robot's transfers in order.", wh_flow_list_fields},
-    {"down", "A station, at 1, that fails for a while.", wh_flow_down_fields},
+    {"down", "A station, at 1, that fails for a while; or a robot that begins nothing meanwhile.",
+     wh_flow_down_fields},
     {NULL, NULL, NULL}};
 
 static void push_classes(lua_State *L, const wh_layout_class_t *classes, lua_Integer first) {

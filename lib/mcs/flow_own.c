@@ -139,7 +139,8 @@ static char *tell_problem(void *context, const wh_flow_state_t *state, const wh_
     lua_createtable(L, 0, 4);
     lua_pushstring(L, problem->what == WH_FLOW_LATE ? "late" : "down");
     lua_setfield(L, -2, "kind");
-    lua_pushstring(L, own->seen.tool->stations[problem->station].name);
+    lua_pushstring(L,
+                   problem->station == WH_FLOW_NONE ? NULL : own->seen.tool->stations[problem->station].name);
     lua_setfield(L, -2, "station");
     lua_pushnumber(L, problem->us == WH_FLOW_FOR_EVER ? (lua_Number)INFINITY : (double)problem->us / 1e6);
     lua_setfield(L, -2, "seconds");

@@ -25,7 +25,7 @@ const wh_reader_field_t wh_flow_fields[] = {
     {"on_error", "fun(tool: table, problem: table): string?",
      "hears of stays beyond windows and of stations that fail; a text that it returns ends the flow", false},
     {"until_s", "number", "s: the flow is cut there", false},
-    {"down", "waferhand.down[]", "stations that fail for a while", false},
+    {"down", "waferhand.down[]", "stations that fail for a while, and robots that are held", false},
     {"takt", "number", "s: the least time between two wafers' starts", false},
     {"safe", "boolean", "false: rules may begin transfers after which wafers could block each other", false},
     {"gains", "boolean",
@@ -134,9 +134,7 @@ static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_t
     lot->lot.priority = wh_reader_whole(reader, "priority", 0, -1000, 1000);
     lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
     lot->lot.is_mapped = wh_reader_boolean(reader, "map", false);
-    if (lot->lot.is_mapped && !tool->robots[0].is_real) {
-        wh_reader_refuse(reader, "map", NULL, "nothing: the robots are times alone");
-    }
+    wh_flow_refuse_timed(reader, tool, lot->station, "map", lot->lot.is_mapped);
     lot->back = WH_FLOW_NONE;
     if (wh_reader_has(reader, "back")) {
         char back[WH_NAME_SIZE];
@@ -288,7 +286,9 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
 
 static int by_begin(const void *a, const void *b) {
     const wh_flow_down_t *one = a, *other = b;
-    return one->at_us < other->at_us ? -1 : one->at_us > other->at_us ? 1 : one->station - other->station;
+    return one->at_us != other->at_us       ? (one->at_us < other->at_us ? -1 : 1)
+           : one->station != other->station ? one->station - other->station
+                                            : one->robot - other->robot;
 }
 
 /* Nothing and math.huge are for ever. */
@@ -314,9 +314,15 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
             wh_reader_fail(reader, NULL, "{ STATION, at = , seconds = }");
         }
         wh_flow_down_t *down = &plan->downs[plan->down_count];
-        down->station = wh_timed_find_station(reader, tool, "[1]", wh_timed_read_entry(reader, 1, name));
+        (void)wh_timed_read_entry(reader, 1, name);
+        down->robot = wh_flow_robot_named(tool, name);
+        down->station =
+            down->robot == WH_FLOW_NONE ? wh_timed_find_station(reader, tool, "[1]", name) : WH_FLOW_NONE;
         down->at_us = wh_flow_read_us(reader, "at", NAN);
         down->for_us = read_length(reader);
+        if (down->robot != WH_FLOW_NONE && down->for_us == WH_FLOW_FOR_EVER) {
+            wh_reader_refuse(reader, "seconds", NULL, "a number: %s is held so long", name);
+        }
         ++plan->down_count;
         wh_reader_leave(reader);
     }
@@ -340,7 +346,7 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
     plan->takt_us = wh_flow_read_us(reader, "takt", 0);
     plan->is_safe = wh_reader_boolean(reader, "safe", true);
     flow->has_gains = wh_reader_boolean(reader, "gains", false);
-    if (flow->has_gains && tool->robots[0].is_real) {
+    if (flow->has_gains && wh_flow_has_real(tool)) {
         wh_reader_refuse(reader, "gains", NULL, "nothing: a cell with axes would be played again for each");
     }
     if (flow->has_gains && plan->rule == WH_FLOW_OWN) {

@@ -29,6 +29,7 @@ static void drop(wh_flow_played_t *played, bool has_result) {
     free(played->is_mapped);
     free(played->is_taken);
     free(played->heard);
+    wh_flow_timed_close(played);
     played->numbers = NULL;
     played->is_mapped = played->is_taken = NULL;
     played->heard = NULL;
@@ -71,9 +72,10 @@ static void shut_doors(wh_flow_played_t *played) {
     const wh_flow_tool_t *tool = played->tool;
     for (size_t s = 0; s < tool->station_count; ++s) {
         for (size_t r = 0; r < tool->robot_count; ++r) {
-            const int32_t door = wh_layout_door_of(played->mcs->layout, s, r);
-            if (door != WH_NONE && tool->serves[wh_flow_of(tool, (int32_t)r, (int32_t)s)] &&
-                strcmp(wh_mcs_door_word(played->mcs, (size_t)door), "shut") != 0) {
+            const size_t of = wh_flow_of(tool, (int32_t)r, (int32_t)s);
+            const wh_flow_door_t *door = &tool->doors[of];
+            if (door->is_real && tool->serves[of] &&
+                strcmp(wh_mcs_door_word(played->mcs, (size_t)door->number), "shut") != 0) {
                 played->engine->state.stations[s].real.is_shutting = true;
             }
         }
@@ -105,6 +107,7 @@ static int begin_flow(lua_State *L) {
     played->flow->began_us = mcs->track.slice * mcs->track.slice_us;
     make_room(played);
     wh_flow_bind_wafers(L, played);
+    wh_flow_timed_open(played);
     played->outside = (wh_flow_outside_t){
         played,       wh_flow_hear,       wh_flow_look, wh_flow_pump_lock, wh_flow_hold_station,
         played->tool, mcs->track.slice_us};
@@ -135,7 +138,9 @@ static int step_flow(lua_State *L) {
     }
     wh_flow_own_use(L, &played->flow->plan);
     played->is_due = false;
+    wh_flow_timed_wait(played);
     const int64_t next_us = wh_flow_engine_step(engine, now_us);
+    wh_flow_timed_begin(played);
     if (engine->is_over && engine->end == WH_FLOW_STUCK) {
         wh_flow_say_unbegun(played, &engine->state);
         engine->end = engine->state.cause ? WH_FLOW_BROKEN : WH_FLOW_STUCK;
@@ -173,7 +178,7 @@ static void set_place(lua_State *L, const wh_flow_played_t *played, int32_t plac
 }
 
 static void set_gripper(lua_State *L, const wh_flow_played_t *played, int32_t robot, int32_t arm) {
-    const int32_t gripper = wh_flow_gripper_of(played->mcs->layout, robot, arm);
+    const int32_t gripper = wh_flow_gripper_of(played->mcs->layout, played->tool->robots[robot].number, arm);
     wh_lua_set_text(L, "gripper", played->mcs->layout->grippers[gripper].name);
 }
 
@@ -236,8 +241,8 @@ static void push_action(lua_State *L, const wh_flow_played_t *played, int32_t ro
     wh_lua_set_text(L, "what", words[at->action]);
     wh_lua_set_text(L, "station", played->tool->stations[at->station].name);
     if (at->action == WH_FLOW_OPENING) {
-        const int32_t door = wh_layout_door_of(played->mcs->layout, (size_t)at->station, (size_t)robot);
-        wh_lua_set_text(L, "door", played->mcs->layout->door_list[door].name);
+        const wh_flow_door_t *door = &played->tool->doors[wh_flow_of(played->tool, robot, at->station)];
+        wh_lua_set_text(L, "door", played->mcs->layout->door_list[door->number].name);
     } else if (at->action == WH_FLOW_MOVING || at->action == WH_FLOW_CARRYING) {
         set_way(L, played, robot);
     } else {
@@ -255,7 +260,7 @@ static void push_action(lua_State *L, const wh_flow_played_t *played, int32_t ro
 
 /* native.take_action(robot): the action that the flow has begun for it, once: { what = "move", "open",
  * "pick", "place" or "swap", station, slot, gripper, door, centre, map }; nil: none; false: the flow is
- * over. */
+ * over. A robot that is times alone has "open" alone. */
 static int take_action(lua_State *L) {
     const wh_flow_played_t *played = played_of(L);
     const int32_t robot = wh_mcs_index(L, 1, played->tool->robot_count);
@@ -304,9 +309,9 @@ static int end_on_error(lua_State *L) {
 static void push_doors(lua_State *L, const wh_flow_played_t *played, int32_t station) {
     const wh_layout_t *layout = played->mcs->layout;
     uint32_t doors = 0;
-    for (size_t r = 0; r < layout->robot_count; ++r) {
-        const int32_t door = wh_layout_door_of(layout, (size_t)station, r);
-        doors |= door == WH_NONE ? 0 : UINT32_C(1) << door;
+    for (int32_t r = 0; r < (int32_t)played->tool->robot_count; ++r) {
+        const wh_flow_door_t *door = &played->tool->doors[wh_flow_of(played->tool, r, station)];
+        doors |= door->is_real ? UINT32_C(1) << door->number : 0;
     }
     lua_newtable(L);
     for (size_t d = 0; d < layout->machine.door_count; ++d) {

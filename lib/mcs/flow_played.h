@@ -13,6 +13,18 @@ typedef struct {
     int64_t lifted_us; /* of a wafer that was taken */
 } wh_flow_heard_t;
 
+/* A place that a robot which is times alone has emptied, or filled. */
+typedef struct {
+    int32_t place;
+    bool is_filled;
+} wh_flow_carried_t;
+
+/* A wafer that a robot which is times alone may carry. */
+typedef struct {
+    int32_t found;             /* the layout's wafer */
+    wh_pose_t slot_from_wafer; /* as it lay in the last slot, and will in the next one */
+} wh_flow_aboard_t;
+
 typedef struct wh_flow_played {
     wh_mcs_t *mcs;
     wh_flow_t *flow; /* the record's */
@@ -20,12 +32,16 @@ typedef struct wh_flow_played {
     wh_flow_measure_t *measure; /* null: it is over, and closed */
     wh_flow_engine_t *engine;   /* of that */
     wh_flow_outside_t outside;
-    int32_t *numbers; /* by wafer of the layout: that of the flow, or WH_FLOW_NONE */
-    bool *is_mapped;  /* by lot */
-    bool *is_taken;   /* by station: its door's shutting, or its work, is carried out */
+    int32_t *numbers;         /* by wafer of the layout: that of the flow, or WH_FLOW_NONE */
+    bool *is_mapped;          /* by lot */
+    bool *is_taken;           /* by station: its door's shutting, or its work, is carried out */
+    wh_flow_aboard_t *aboard; /* by wafer of the flow, as robots that are times alone carry them */
     wh_flow_heard_t *heard;
     size_t heard_count, heard_capacity;
-    bool is_due; /* something was told since the last step */
+    bool is_due;                /* something was told since the last step */
+    wh_flow_carried_t *carried; /* what robots that are times alone have done, and nobody has noted yet */
+    size_t carried_count, carried_capacity, noted_count;
+    int32_t waited; /* slices in which the simulator had no room for a wafer's order */
 } wh_flow_played_t;
 
 /* Lots' wafers get the names of those that lie in their slots. Raises what cannot be: a slot without a
@@ -46,6 +62,29 @@ void wh_flow_say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state)
 
 /* The next wafer that comes to this place is processed as its step has it. */
 void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t place);
+
+/* Robots that are times alone: flow_timed.c. A wafer that one picks leaves the cell with the slice in which
+ * that ends, and comes back with the one in which its placing ends, by orders to the simulator. */
+
+void wh_flow_timed_open(wh_flow_played_t *played);
+void wh_flow_timed_close(wh_flow_played_t *played);
+
+/* Before the engine's step: what ends now waits a slice longer if the simulator has not carried it out. */
+void wh_flow_timed_wait(wh_flow_played_t *played);
+
+/* Behind it: stations see what has begun. */
+void wh_flow_timed_begin(const wh_flow_played_t *played);
+
+/* Adds orders to the command of the slice that goes out. If something is not as it must be, the flow ends by
+ * its cause. */
+void wh_flow_timed_send(wh_mcs_t *mcs);
+
+/* The use that such a robot makes now of a station, and of its slot, from 0. */
+typedef struct {
+    bool is_inside; /* in any slot of the station */
+    bool takes, brings;
+} wh_flow_use_t;
+wh_flow_use_t wh_flow_timed_use(const wh_mcs_t *mcs, int32_t station, int32_t slot);
 
 /* A station has told something. True if a flow judges how long its wafer stayed. */
 bool wh_flow_played_hear(const wh_mcs_t *mcs, const wh_clocks_telling_t *telling,

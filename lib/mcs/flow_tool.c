@@ -43,18 +43,53 @@ static void fill_station(const wh_layout_t *layout, size_t s, wh_flow_station_t 
                                                                   : WH_FLOW_WORK_NONE;
 }
 
-static void fill_robot(const wh_layout_t *layout, int32_t r, wh_flow_tool_t *tool) {
+static void fill_robot(const wh_layout_t *layout, int32_t number, wh_flow_tool_t *tool, int32_t r) {
     wh_flow_robot_t *robot = &tool->robots[r];
-    robot->name = wh_text_copy(layout->robots[r].name);
-    robot->arms = count_arms(layout, r);
+    robot->name = wh_text_copy(layout->robots[number].name);
+    robot->arms = count_arms(layout, number);
     robot->at = WH_FLOW_NONE;
     robot->is_real = true;
+    robot->number = number;
     for (size_t s = 0; s < layout->station_count; ++s) {
         const size_t of = wh_flow_of(tool, r, (int32_t)s);
         const wh_layout_approach_t *by = layout->stations[s].by;
-        tool->serves[of] = robot->arms > 0 && layout->stations[s].taught && (!by || by[r].serves);
-        tool->doors[of].is_real = wh_layout_door_of(layout, s, (size_t)r) != WH_NONE;
-        tool->sides[of] = wh_layout_side_of(layout, s, (size_t)r);
+        const int32_t door = wh_layout_door_of(layout, s, (size_t)number);
+        tool->serves[of] = robot->arms > 0 && layout->stations[s].taught && (!by || by[number].serves);
+        tool->doors[of] = (wh_flow_door_t){.is_real = door != WH_NONE, .number = door};
+        tool->sides[of] = wh_layout_side_of(layout, s, (size_t)number);
+    }
+}
+
+/* A robot that is times alone: all is as the layout's own tool has it. */
+static void fill_timed(const wh_flow_tool_t *from, int32_t number, wh_flow_tool_t *tool, int32_t r) {
+    const size_t stations = from->station_count, is = wh_flow_of(from, number, 0),
+                 of = wh_flow_of(tool, r, 0);
+    tool->robots[r] = from->robots[number];
+    tool->robots[r].name = wh_text_copy(from->robots[number].name);
+    tool->robots[r].number = number;
+    memcpy(&tool->serves[of], &from->serves[is], stations * sizeof *tool->serves);
+    memcpy(&tool->doors[of], &from->doors[is], stations * sizeof *tool->doors);
+    memcpy(&tool->sides[of], &from->sides[is], stations * sizeof *tool->sides);
+    memcpy(&tool->pick_us[of], &from->pick_us[is], stations * sizeof *tool->pick_us);
+    memcpy(&tool->place_us[of], &from->place_us[is], stations * sizeof *tool->place_us);
+    memcpy(&tool->swap_us[of], &from->swap_us[is], stations * sizeof *tool->swap_us);
+    memcpy(&tool->move_us[of * stations], &from->move_us[is * stations],
+           stations * stations * sizeof *tool->move_us);
+}
+
+/* Both kinds in the order of their names, in which rules are asked. */
+static void fill_robots(const wh_layout_t *layout, wh_flow_tool_t *tool) {
+    const wh_flow_tool_t *timed = layout->timed;
+    int32_t real = 0, other = 0;
+    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
+        const bool is_real = !timed || other == (int32_t)timed->robot_count ||
+                             (real < (int32_t)layout->robot_count &&
+                              strcmp(layout->robots[real].name, timed->robots[other].name) < 0);
+        if (is_real) {
+            fill_robot(layout, real++, tool, r);
+        } else {
+            fill_timed(timed, other++, tool, r);
+        }
     }
 }
 
@@ -71,13 +106,12 @@ wh_flow_tool_t *wh_flow_tool_of_layout(lua_State *L, const wh_layout_t *layout) 
     lua_setfield(L, -2, "__gc");
     lua_setmetatable(L, -2);
     lua_rawsetp(L, LUA_REGISTRYINDEX, tool);
-    wh_flow_tool_open(tool, layout->robot_count, layout->station_count);
+    wh_flow_tool_open(tool, layout->robot_count + (layout->timed ? layout->timed->robot_count : 0),
+                      layout->station_count);
     for (size_t s = 0; s < layout->station_count; ++s) {
         fill_station(layout, s, &tool->stations[s]);
     }
     wh_flow_tool_number(tool);
-    for (size_t r = 0; r < layout->robot_count; ++r) {
-        fill_robot(layout, (int32_t)r, tool);
-    }
+    fill_robots(layout, tool);
     return tool;
 }

@@ -31,7 +31,8 @@ static void push_servers(lua_State *L, const wh_layout_t *layout, const wh_layou
     lua_setfield(L, -2, "by");
 }
 
-/* doors: by robot the door of the station, or false; nil: it has none. */
+/* doors: by robot the door of the station, or false; nil: there is none, also for robots that are times
+ * alone. */
 static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t station) {
     bool is_any = false;
     lua_createtable(L, (int)layout->robot_count, 0);
@@ -44,6 +45,9 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
         }
         lua_rawseti(L, -2, (lua_Integer)r + 1);
         is_any = is_any || door != WH_NONE;
+    }
+    for (int32_t r = 0; layout->timed && r < (int32_t)layout->timed->robot_count; ++r) {
+        is_any = is_any || layout->timed->doors[wh_flow_of(layout->timed, r, (int32_t)station)].is_real;
     }
     if (!is_any) {
         lua_pop(L, 1);
@@ -270,9 +274,20 @@ static double time_to_vent(const wh_vacuum_config_t *vacuum) {
     return vacuum->vent > 0 ? -vacuum->vent * wh_ln(vacuum->release) : 0;
 }
 
-/* { path, patterns (or nil), slice, sampled, homed, seat, thickness, vent, tolerance, robots in order,
- * corrections: the largest ones, by a command's field, the turn in degrees, grippers and doors in order,
- * stations by name }: lengths in mm, other angles in rad, times in s. */
+/* timed_robots: the names of those beside robots with axes. */
+static void push_timed(lua_State *L, const wh_layout_t *layout) {
+    const size_t count = layout->timed ? layout->timed->robot_count : 0;
+    lua_createtable(L, (int)count, 0);
+    for (size_t r = 0; r < count; ++r) {
+        lua_pushstring(L, layout->timed->robots[r].name);
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "timed_robots");
+}
+
+/* { path, patterns (or nil), timed_robots, slice, sampled, homed, seat, thickness, vent, tolerance, robots in
+ * order, corrections: the largest ones, by a command's field, the turn in degrees, grippers and doors in
+ * order, stations by name }: lengths in mm, other angles in rad, times in s. */
 void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);
@@ -284,6 +299,7 @@ void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout) {
     wh_lua_set_boolean(L, "homed", layout->homed);
     wh_lua_set_boolean(L, "seat", layout->grasp.seat);
     wh_lua_set_boolean(L, "timed", layout->tool != NULL);
+    push_timed(L, layout);
     wh_lua_set_number(L, "thickness", layout->wafer_thickness);
     wh_lua_set_number(L, "vent", time_to_vent(&layout->physics.vacuum));
     wh_lua_push_tolerance(L, &layout->grasp.tolerance);

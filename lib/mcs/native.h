@@ -108,6 +108,7 @@ extern const luaL_Reg wh_mcs_arrival_functions[];
 extern const luaL_Reg wh_mcs_believed_functions[];
 extern const luaL_Reg wh_mcs_flow_functions[];
 extern const luaL_Reg wh_mcs_flow_played_functions[];
+extern const luaL_Reg wh_mcs_flow_timed_functions[];
 extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];

@@ -187,8 +187,8 @@ void wh_ports_hear(struct wh_ports *ports, const wh_state_t *state, double us) {
 
 /* A slot that has no fault and will get none with this command, from the last one down: scripts' faults take
  * the first ones. WH_FAULTS: there is none. */
-static size_t find_slot(const wh_mcs_t *mcs, const wh_command_t *command, size_t most) {
-    for (size_t slot = most; slot > 0; --slot) {
+static size_t find_slot(const wh_mcs_t *mcs, const wh_command_t *command) {
+    for (size_t slot = WH_FAULTS; slot > 0; --slot) {
         const size_t i = slot - 1;
         const wh_physics_state_t *physics = mcs->state.physics;
         bool is_used = i < mcs->armed.fault_count && mcs->armed.faults[i].until > mcs->track.slice;
@@ -206,19 +206,21 @@ static size_t find_slot(const wh_mcs_t *mcs, const wh_command_t *command, size_t
     return WH_FAULTS;
 }
 
+void wh_ports_order(const wh_mcs_t *mcs, wh_command_t *command, int32_t wafer,
+                    const wh_pose_t *base_from_wafer) {
+    const size_t slot = command->fault_count < WH_COMMAND_FAULTS ? find_slot(mcs, command) : WH_FAULTS;
+    if (slot == WH_FAULTS) {
+        return;
+    }
+    wh_fault_request_t *request = &command->faults[command->fault_count++];
+    request->index = (int32_t)slot;
+    request->fault = wh_fault_make(WH_FAULT_WAFER_PLACED, wafer, 0, command->seq, WH_FAULT_FOREVER);
+    request->fault.offset = *base_from_wafer;
+}
+
 void wh_ports_send(const struct wh_ports *ports, wh_command_t *command) {
-    size_t slot = WH_FAULTS;
-    for (size_t i = 0; i < ports->state->order_count && command->fault_count < WH_COMMAND_FAULTS; ++i) {
-        const wh_load_port_order_t *order = &ports->orders[i];
-        slot = find_slot(ports->mcs, command, slot);
-        if (slot == WH_FAULTS) {
-            return;
-        }
-        wh_fault_request_t *request = &command->faults[command->fault_count++];
-        request->index = (int32_t)slot;
-        request->fault =
-            wh_fault_make(WH_FAULT_WAFER_PLACED, order->wafer, 0, command->seq, WH_FAULT_FOREVER);
-        request->fault.offset = order->base_from_wafer;
+    for (size_t i = 0; i < ports->state->order_count; ++i) {
+        wh_ports_order(ports->mcs, command, ports->orders[i].wafer, &ports->orders[i].base_from_wafer);
     }
 }
 

@@ -75,6 +75,11 @@ void wh_ports_hear(struct wh_ports *ports, const wh_state_t *state, double us);
 /* Adds orders of wafers to the command that goes out next. */
 void wh_ports_send(const struct wh_ports *ports, wh_command_t *command);
 
+/* Adds the order that the wafer comes to lie there to a command, if that and the simulator have room for it:
+ * the state shows whether it was carried out. */
+void wh_ports_order(const wh_mcs_t *mcs, wh_command_t *command, int32_t wafer,
+                    const wh_pose_t *base_from_wafer);
+
 /* The number of us in which nothing ends or comes, without faults; INFINITY: it stays so. */
 double wh_ports_quiet_us(const struct wh_ports *ports, int64_t now_us);
 

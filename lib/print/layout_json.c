@@ -172,6 +172,24 @@ static json_t *servers(const wh_layout_t *layout, const wh_layout_station_t *sta
     return list;
 }
 
+/* Robots beside those with axes, and the stations to which they come. */
+static json_t *timed_robots(const wh_flow_tool_t *timed) {
+    json_t *list = json_array();
+    for (size_t r = 0; r < timed->robot_count; ++r) {
+        json_t *stations = json_array();
+        for (size_t s = 0; s < timed->station_count; ++s) {
+            if (timed->serves[wh_flow_of(timed, (int32_t)r, (int32_t)s)]) {
+                (void)json_array_append_new(stations, wh_json_text(timed->stations[s].name));
+            }
+        }
+        json_t *robot =
+            wh_json_set(json_object(), "robot %s arms %d", timed->robots[r].name, (int)timed->robots[r].arms);
+        wh_json_put(robot, "stations", stations);
+        (void)json_array_append_new(list, robot);
+    }
+    return list;
+}
+
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
@@ -364,6 +382,9 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
                       NULL);
     if (layout->machine.door_count > 0) {
         wh_json_put(root, "doors", wh_json_list(door, layout, layout->machine.door_count));
+    }
+    if (layout->timed) {
+        wh_json_put(root, "times_alone", timed_robots(layout->timed));
     }
     if (layout->carrier_count > 0) {
         wh_json_put(root, "carriers", wh_json_list(wh_layout_carrier_to_json, layout, layout->carrier_count));

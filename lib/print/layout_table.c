@@ -211,7 +211,7 @@ static void print_ports(const listing_t *listing) {
 
 static void print_servers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
-    if (layout->robot_count < 2) {
+    if (!wh_layout_is_shared(layout)) {
         return;
     }
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 2, "station;robot;heading deg{0,6};unless told");
@@ -229,6 +229,36 @@ static void print_servers(const listing_t *listing) {
         }
     }
     wh_print_titled(&listing->frame, "Served by", grid);
+}
+
+static void add_timed(const wh_layout_t *layout, wh_grid_t *grid, int32_t robot, int32_t station) {
+    const wh_flow_tool_t *timed = layout->timed;
+    const size_t of = wh_flow_of(timed, robot, station);
+    const char *side = wh_flow_side_words[timed->sides[of]];
+    wh_grid_named_row(grid, timed->robots[robot].name);
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", timed->stations[station].name);
+    wh_grid_number(grid, 2, WH_INK_PLAIN, (double)timed->pick_us[of] / 1e6);
+    wh_grid_number(grid, 3, WH_INK_PLAIN, (double)timed->place_us[of] / 1e6);
+    wh_grid_text(grid, 4, WH_INK_PLAIN, "%s", side ? side : "");
+    wh_grid_text(grid, 5, WH_INK_PLAIN, "%s",
+                 timed->doors[of].is_real ? layout->door_list[timed->doors[of].number].name : "");
+}
+
+/* Robots beside those with axes, and the stations to which they come. */
+static void print_timed(const listing_t *listing) {
+    const wh_flow_tool_t *timed = listing->layout->timed;
+    if (!timed) {
+        return;
+    }
+    wh_grid_t *grid =
+        wh_grid_new(listing->frame.style, 2, "times alone;station;pick s{3};place s{3};side;door");
+    for (size_t i = 0; i < timed->robot_count * timed->station_count; ++i) {
+        if (timed->serves[i]) {
+            add_timed(listing->layout, grid, (int32_t)(i / timed->station_count),
+                      (int32_t)(i % timed->station_count));
+        }
+    }
+    wh_print_titled(&listing->frame, "Robots that are times alone", grid);
 }
 
 static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
@@ -417,6 +447,7 @@ int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_sty
     print_times(&listing);
     print_ports(&listing);
     print_servers(&listing);
+    print_timed(&listing);
     print_room(&listing);
     print_holding(&listing);
     print_faults(&listing);

@@ -33,18 +33,11 @@ static size_t count_ok(const wh_paces_t *paces) {
     return ok;
 }
 
-static void add_unlooked(wh_print_unlooked_t *unlooked, const wh_sweep_point_t *point) {
-    const bool played = point->verdict == WH_SWEEP_OK || point->verdict == WH_SWEEP_FAILED;
-    unlooked->unchecked += played && !point->checked && !point->is_timed ? 1 : 0;
-    unlooked->timed += played && point->is_timed ? 1 : 0;
-    unlooked->cut += played && point->is_cut ? 1 : 0;
-}
-
 static void print_unlooked(const wh_paces_t *paces, FILE *out) {
-    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0};
-    add_unlooked(&unlooked, &paces->base);
+    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0, 0};
+    wh_print_unlooked_add(&unlooked, &paces->base);
     for (size_t i = 0; i < paces->count; ++i) {
-        add_unlooked(&unlooked, &paces->paces[i].point);
+        wh_print_unlooked_add(&unlooked, &paces->paces[i].point);
     }
     wh_print_unlooked(&unlooked, out);
 }

@@ -329,6 +329,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
         (void)wh_json_set(root, "crowded_slices %lld", (json_int_t)record->crowded);
     }
     wh_json_put(root, "not_looked_for", wh_json_text(record->unlooked));
+    if (record->times_alone) {
+        wh_json_put(root, "times_alone", wh_json_text(record->times_alone));
+    }
     if (record->counted.is_wanted) {
         wh_json_put(root, "counted", counted_of(record));
     }

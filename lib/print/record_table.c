@@ -292,6 +292,11 @@ static void print_summary(const wh_printer_t *printer, bool is_brief) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);
     }
+    if (record->times_alone) {
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        wh_style_put(printer->out, record->times_alone);
+        fputs(": " WH_RECORD_SOME_ALONE "\n", printer->out);
+    }
     print_cut(printer);
     if (record->never_came) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");

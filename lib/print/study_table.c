@@ -281,6 +281,13 @@ static void print_how(const table_t *table) {
     }
 }
 
+static void print_alone(const table_t *table) {
+    if (table->study->study->nominal.record.times_alone) {
+        fprintf(table->frame.out, "! %s: " WH_RECORD_SOME_ALONE "\n",
+                table->study->study->nominal.record.times_alone);
+    }
+}
+
 /* Prints warnings that the rate does not show. */
 static void print_warnings(const table_t *table) {
     const wh_trial_lines_t *lines = &table->tally->lines;
@@ -292,6 +299,7 @@ static void print_warnings(const table_t *table) {
     if (!table->study->study->layout->collision) {
         fputs("! " WH_RECORD_UNLOOKED "\n", table->frame.out);
     }
+    print_alone(table);
     if (never_came) {
         fprintf(table->frame.out, "! never came in the run without errors, and so were not tried: %s\n",
                 never_came);

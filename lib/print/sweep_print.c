@@ -157,13 +157,9 @@ static void print_end(const wh_sweep_axis_t *axis, FILE *out) {
 }
 
 static wh_print_unlooked_t count_unlooked(const wh_script_sweep_t *sweep) {
-    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0};
+    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0, 0};
     for (size_t i = 0; i < sweep->point_count; ++i) {
-        const wh_sweep_point_t *point = &sweep->points[i];
-        const bool played = point->verdict == WH_SWEEP_OK || point->verdict == WH_SWEEP_FAILED;
-        unlooked.unchecked += played && !point->checked && !point->is_timed ? 1 : 0;
-        unlooked.timed += played && point->is_timed ? 1 : 0;
-        unlooked.cut += played && point->is_cut ? 1 : 0;
+        wh_print_unlooked_add(&unlooked, &sweep->points[i]);
     }
     return unlooked;
 }

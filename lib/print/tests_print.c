@@ -99,10 +99,11 @@ void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *
 
 /* Like those of a sweep: in how many scripts nobody looked for collisions, or a flow was cut. */
 static void put_unlooked(const wh_test_result_t results[], size_t count, FILE *out, const char *before) {
-    wh_print_unlooked_t unlooked = {before, "script", 0, 0, 0};
+    wh_print_unlooked_t unlooked = {before, "script", 0, 0, 0, 0};
     for (size_t i = 0; i < count; ++i) {
         unlooked.unchecked += results[i].is_unlooked && !results[i].is_timed ? 1 : 0;
         unlooked.timed += results[i].is_timed ? 1 : 0;
+        unlooked.partly += results[i].has_timed ? 1 : 0;
         unlooked.cut += results[i].is_cut ? 1 : 0;
     }
     wh_print_unlooked(&unlooked, out);

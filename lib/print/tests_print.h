@@ -39,6 +39,7 @@ typedef struct {
     uint64_t hash;    /* of the run */
     bool is_unlooked; /* it was played, and nobody looked for collisions */
     bool is_timed;    /* nor at places and ways: its robots are times alone */
+    bool has_timed;   /* some of them are, beside robots with axes */
     bool is_cut;      /* its flow was cut with wafers not at their ends */
     char *never_came; /* the faults and errors on purpose that did not come; null: none */
 } wh_test_result_t;

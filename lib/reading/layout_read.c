@@ -255,6 +255,69 @@ static void stand_in(wh_reader_t *reader, wh_layout_t *layout) {
     lua_setfield(L, -2, "grippers");
 }
 
+/* A copy of the layout's table, left on top of the stack, whose `robots` are the timed ones alone, or the
+ * others. */
+static void copy_with(lua_State *L, int table, bool are_timed) {
+    lua_newtable(L);
+    for (lua_pushnil(L); lua_next(L, table) != 0;) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -4);
+    }
+    lua_newtable(L);
+    lua_getfield(L, table, "robots");
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const bool is_table = lua_istable(L, -1) && lua_getfield(L, -1, "kind") != LUA_TNONE;
+        const bool is_timed = is_table && lua_isstring(L, -1) && strcmp(lua_tostring(L, -1), "timed") == 0;
+        lua_pop(L, is_table ? 1 : 0);
+        if (is_timed == are_timed) {
+            lua_pushvalue(L, -2);
+            lua_pushvalue(L, -2);
+            lua_rawset(L, -6);
+        }
+    }
+    lua_pop(L, 1);
+    lua_setfield(L, -2, "robots");
+}
+
+/* Robots of both kinds: the timed ones are read behind all else. Leaves two tables on the stack, that with
+ * the timed ones and, above it, that with the others. */
+static void part_robots(wh_reader_t *reader, wh_layout_t *layout) {
+    const int top = lua_gettop(reader->L);
+    wh_layout_refuse_field(reader, "robot", "nothing: `robots` has them all");
+    copy_with(reader->L, top, true);
+    layout->timed = wh_timed_open_tool(reader);
+    if (layout->timed->robot_count > WH_LAYOUT_TIMED) {
+        lua_pushinteger(reader->L, (lua_Integer)layout->timed->robot_count);
+        wh_reader_fail(reader, "robots", "at most %d of kind \"timed\" beside robots with axes",
+                       WH_LAYOUT_TIMED);
+    }
+    copy_with(reader->L, top, false);
+}
+
+/* `from` is the stack index of their table. */
+static void read_timed_robots(wh_reader_t *reader, wh_layout_t *layout, int from) {
+    wh_flow_tool_t *tool = layout->timed;
+    if (!tool) {
+        return;
+    }
+    wh_vec3_t *at = wh_layout_memory(reader->L, tool->station_count, sizeof *at);
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        tool->stations[s].slots = layout->places[s].slots;
+        at[s] = layout->places[s].base_from_station.r;
+    }
+    wh_flow_tool_number(tool);
+    lua_pushvalue(reader->L, from);
+    (void)wh_reader_enter(reader, "robots");
+    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
+        (void)wh_reader_enter(reader, tool->robots[r].name);
+        wh_timed_read_robot(reader, tool, r, at);
+        wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+    lua_pop(reader->L, 1);
+}
+
 /* The order matters: limits of later fields depend on earlier ones. Strokes are checked against the slice,
  * grippers name stations, wafers lie in them, and shapes follow the wafer's size. */
 wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
@@ -268,6 +331,8 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     const int top = lua_gettop(L);
     if (wh_layout_is_timed(&reader)) {
         stand_in(&reader, layout);
+    } else if (wh_layout_is_mixed(&reader)) {
+        part_robots(&reader, layout);
     }
     wh_reader_refuse_unknown(&reader, wh_layout_top_fields);
     wh_layout_read_patterns(&reader, layout);
@@ -283,6 +348,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_vias(&reader, layout);
     wh_layout_read_effectors(&reader, layout);
     wh_layout_read_times(&reader, layout);
+    read_timed_robots(&reader, layout, top + 1);
     wh_layout_read_wafers(&reader, layout);
     wh_layout_find_faces(layout);
     wh_layout_read_sensing(&reader, layout);

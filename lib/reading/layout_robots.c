@@ -101,13 +101,17 @@ static void read_taught(wh_reader_t *reader, const wh_station_t *place, wh_layou
     }
 }
 
+static bool is_timed(const wh_layout_t *layout, const char *name) {
+    return layout->timed && wh_flow_robot_named(layout->timed, name) != WH_FLOW_NONE;
+}
+
 /* Refuses names in `by` that no robot has, and a table without any. */
 static void check_by(wh_reader_t *reader, const wh_layout_t *layout) {
     size_t count = 0;
     const wh_layout_robot_t *said =
         wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof *said, "robots", &count);
     for (size_t i = 0; i < count; ++i) {
-        if (wh_layout_find_robot(layout, said[i].name) == WH_NONE) {
+        if (wh_layout_find_robot(layout, said[i].name) == WH_NONE && !is_timed(layout, said[i].name)) {
             lua_pushstring(reader->L, said[i].name);
             wh_reader_fail(reader, NULL, "robots of this layout by name");
         }
@@ -153,10 +157,12 @@ static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
 void wh_layout_read_approach(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     wh_layout_station_t *station = &layout->stations[s];
     const wh_chain_t *chain = layout->machine.carrier ? &layout->carrier.chain : NULL;
-    if (wh_layout_find_robot(layout, station->name) != WH_NONE && layout->robot_count > 1) {
+    const bool is_robot =
+        wh_layout_find_robot(layout, station->name) != WH_NONE || is_timed(layout, station->name);
+    if (is_robot && wh_layout_is_shared(layout)) {
         wh_reader_fail(reader, NULL, "a name that no robot has");
     }
-    if (layout->robot_count > 1) {
+    if (wh_layout_is_shared(layout)) {
         station->elbow = layout->elbow;
         read_by(reader, layout, s);
     } else {
@@ -228,6 +234,7 @@ void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     } else if (count > 1) {
         station->robot = WH_NONE;
     }
+    station->taught = station->taught && wh_layout_is_served(layout, s);
     const int32_t robot = station->robot == WH_NONE ? 0 : station->robot;
     station->effector = station->by[robot].effector;
     station->rail = station->by[robot].rail;

@@ -138,7 +138,7 @@ void wh_layout_check_taught(wh_reader_t *reader) {
 }
 
 bool wh_layout_is_taught(wh_reader_t *reader, const wh_layout_t *layout) {
-    if (layout->robot_count == 1) {
+    if (!wh_layout_is_shared(layout)) {
         wh_layout_check_taught(reader);
         return wh_reader_has(reader, "axes");
     }
@@ -242,7 +242,7 @@ void wh_layout_read_taught(wh_reader_t *reader, wh_layout_t *layout) {
     (void)wh_reader_enter(reader, "stations");
     for (size_t s = 0; s < layout->station_count; ++s) {
         (void)wh_reader_enter(reader, layout->stations[s].name);
-        if (layout->robot_count > 1 && wh_reader_has(reader, "by")) {
+        if (wh_layout_is_shared(layout) && wh_reader_has(reader, "by")) {
             place_by(reader, layout, s);
         } else if (layout->stations[s].by_axes) {
             place_alone(reader, layout, s);

@@ -84,7 +84,7 @@ static void refuse_chuck(wh_reader_t *reader, const wh_layout_station_t *station
 }
 
 static wh_flow_side_t read_side(wh_reader_t *reader, const wh_layout_times_t *times, const char *who) {
-    if (!times->of.is_lock) {
+    if (!times || !times->of.is_lock) {
         wh_layout_refuse_field(reader, "side", "nothing: the station has no `pump`");
         return WH_FLOW_BOTH;
     }
@@ -98,7 +98,7 @@ static wh_flow_side_t read_side(wh_reader_t *reader, const wh_layout_times_t *ti
 /* A door stands between the lock and one side. */
 static void add_door(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_times_t *times, int32_t door,
                      wh_flow_side_t side) {
-    if (door == WH_NONE) {
+    if (door == WH_NONE || !times) {
         return;
     }
     times->doors |= UINT32_C(1) << door;
@@ -164,7 +164,7 @@ static void check_homes(wh_reader_t *reader, const wh_layout_t *layout, const wh
     }
 }
 
-static const wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
+static wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     const wh_layout_station_t *station = &layout->stations[s];
     wh_layout_times_t *times = wh_layout_memory(reader->L, 1, sizeof *times);
     times->of.slots = layout->places[s].slots;
@@ -178,7 +178,6 @@ static const wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_
         add_door(reader, layout, times, station->door, times->side);
     }
     read_pump_doors(reader, layout, times);
-    check_homes(reader, layout, times);
     return times;
 }
 
@@ -195,6 +194,40 @@ static void refuse_sides(wh_reader_t *reader, const wh_layout_t *layout) {
     }
 }
 
+/* A robot that is times alone comes so to the station; `times` is null if that takes none. */
+static void read_timed_server(wh_reader_t *reader, const wh_layout_t *layout, size_t s,
+                              wh_layout_times_t *times, int32_t robot) {
+    const wh_layout_station_t *station = &layout->stations[s];
+    const size_t of = wh_flow_of(layout->timed, robot, (int32_t)s);
+    const char *name = layout->timed->robots[robot].name;
+    if (station->prealigner || station->flipper) {
+        wh_reader_fail(reader, NULL, "nothing: %s is times alone, and passes no wafer to a chuck or a clamp",
+                       name);
+    }
+    layout->timed->serves[of] = true;
+    layout->timed->sides[of] = read_side(reader, times, name);
+    if (wh_reader_has(reader, "door")) {
+        const int32_t door = wh_layout_read_name(reader, layout, "door", NULL, wh_layout_find_door,
+                                                 "the name of one of this layout's doors");
+        layout->timed->doors[of] = (wh_flow_door_t){.is_real = true, .number = door};
+        add_door(reader, layout, times, door, layout->timed->sides[of]);
+    }
+}
+
+static void read_timed_servers(wh_reader_t *reader, const wh_layout_t *layout, size_t s,
+                               wh_layout_times_t *times) {
+    if (!layout->timed || !wh_reader_enter(reader, "by")) {
+        return;
+    }
+    for (int32_t r = 0; r < (int32_t)layout->timed->robot_count; ++r) {
+        if (wh_reader_open(reader, layout->timed->robots[r].name, wh_layout_timed_way_fields)) {
+            read_timed_server(reader, layout, s, times, r);
+            wh_reader_leave(reader);
+        }
+    }
+    wh_reader_leave(reader);
+}
+
 /* layout_ports.c reads these. */
 static bool is_port(wh_reader_t *reader) {
     return (int)wh_reader_apart(reader, "kind") == WH_LAYOUT_LOAD_PORT;
@@ -209,11 +242,17 @@ void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout) {
         for (size_t r = 0; station->by && r < layout->robot_count; ++r) {
             station->by[r].side = WH_FLOW_BOTH;
         }
+        wh_layout_times_t *times = NULL;
         if (says_any(reader) && !is_port(reader)) {
-            station->times = read_times(reader, layout, s);
+            times = read_times(reader, layout, s);
         } else {
             refuse_sides(reader, layout);
         }
+        read_timed_servers(reader, layout, s, times);
+        if (times) {
+            check_homes(reader, layout, times);
+        }
+        station->times = times;
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);

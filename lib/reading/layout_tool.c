@@ -19,18 +19,12 @@ static bool is_kind_timed(const wh_reader_t *reader) {
     return is_timed;
 }
 
-bool wh_layout_is_timed(wh_reader_t *reader) {
-    size_t timed = 0, count = 0;
-    if (wh_reader_push(reader, "robot") == LUA_TTABLE) {
-        lua_pop(reader->L, 1);
-        (void)wh_reader_enter(reader, "robot");
-        const bool is_timed = is_kind_timed(reader);
-        wh_reader_leave(reader);
-        return is_timed;
-    }
-    lua_pop(reader->L, 1);
+/* How many of `robots` are timed, and how many there are. */
+static size_t count_timed(const wh_reader_t *reader, size_t *count) {
+    size_t timed = 0;
+    *count = 0;
     if (wh_reader_push(reader, "robots") == LUA_TTABLE) {
-        for (lua_pushnil(reader->L); lua_next(reader->L, -2) != 0; lua_pop(reader->L, 1), ++count) {
+        for (lua_pushnil(reader->L); lua_next(reader->L, -2) != 0; lua_pop(reader->L, 1), ++*count) {
             if (lua_istable(reader->L, -1)) {
                 lua_getfield(reader->L, -1, "kind");
                 timed += lua_isstring(reader->L, -1) && strcmp(lua_tostring(reader->L, -1), "timed") == 0;
@@ -39,10 +33,27 @@ bool wh_layout_is_timed(wh_reader_t *reader) {
         }
     }
     lua_pop(reader->L, 1);
-    if (timed > 0 && timed < count) {
-        wh_reader_refuse(reader, "robots", NULL, "robots that are all of kind \"timed\", or none of them");
+    return timed;
+}
+
+bool wh_layout_is_timed(wh_reader_t *reader) {
+    size_t count = 0;
+    if (wh_reader_push(reader, "robot") == LUA_TTABLE) {
+        lua_pop(reader->L, 1);
+        (void)wh_reader_enter(reader, "robot");
+        const bool is_timed = is_kind_timed(reader);
+        wh_reader_leave(reader);
+        return is_timed;
     }
-    return timed > 0;
+    lua_pop(reader->L, 1);
+    const size_t timed = count_timed(reader, &count);
+    return timed > 0 && timed == count;
+}
+
+bool wh_layout_is_mixed(const wh_reader_t *reader) {
+    size_t count = 0;
+    const size_t timed = count_timed(reader, &count);
+    return timed > 0 && timed < count;
 }
 
 /* -------------------------------------------------------------------------------------------------- names */
@@ -291,6 +302,12 @@ static bool is_any_flying(wh_reader_t *reader, const wh_flow_tool_t *tool, bool 
         wh_reader_leave(reader);
     }
     return is_any;
+}
+
+wh_flow_tool_t *wh_timed_open_tool(wh_reader_t *reader) {
+    wh_flow_tool_t *tool = new_tool(reader->L);
+    open_named(reader, tool, false);
+    return tool;
 }
 
 const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader) {

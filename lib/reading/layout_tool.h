@@ -6,13 +6,18 @@
 #include "../layout/times.h"
 #include "../script/reader.h"
 
-/* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and
- * others are not. */
+/* True if all robots of the layout at which the reader is are of kind "timed"; and if some are, and others
+ * are not. */
 bool wh_layout_is_timed(wh_reader_t *reader);
+bool wh_layout_is_mixed(const wh_reader_t *reader);
 
 /* Reads such a cell: its robots' times and its stations. The tool lives as long as the Lua state. Raises
  * the first fault. */
 const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader);
+
+/* A tool of the layout's robots and stations by their names; nothing else of it is read. It lives as long as
+ * the Lua state. */
+wh_flow_tool_t *wh_timed_open_tool(wh_reader_t *reader);
 
 /* Whole microseconds of a time in s. */
 int64_t wh_layout_us(double seconds);

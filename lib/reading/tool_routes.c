@@ -84,8 +84,17 @@ static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow
     step->stations[step->station_count++] = station;
 }
 
-static bool is_real(const wh_flow_tool_t *tool) {
-    return tool->robot_count > 0 && tool->robots[0].is_real;
+void wh_flow_refuse_timed(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t station, const char *field,
+                          bool is_wanted) {
+    int32_t robot = WH_FLOW_NONE;
+    if (!is_wanted) {
+        return;
+    } else if (!wh_flow_has_real(tool)) {
+        wh_reader_refuse(reader, field, NULL, "nothing: the robots are times alone");
+    } else if (wh_flow_is_timed_at(tool, station, &robot)) {
+        wh_reader_refuse(reader, field, NULL, "nothing: %s, which serves %s, is times alone",
+                         tool->robots[robot].name, tool->stations[station].name);
+    }
 }
 
 /* Each station of the step must be one that can do it. */
@@ -102,7 +111,7 @@ static void check_work(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh
 /* Wafers are aligned, turned over, centred and mapped where something stands. */
 static void read_work(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step) {
     static const char *const fields[] = {"align", "flip", "centre", "map"};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0] && !is_real(tool); ++i) {
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0] && !wh_flow_has_real(tool); ++i) {
         wh_layout_refuse_field(reader, fields[i], "nothing: the robots are times alone");
     }
     if (wh_reader_has(reader, "align")) {
@@ -116,11 +125,15 @@ static void read_work(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_s
     }
     step->centres = wh_reader_boolean(reader, "centre", false);
     step->maps = wh_reader_boolean(reader, "map", false);
+    for (size_t i = 0; i < step->station_count; ++i) {
+        wh_flow_refuse_timed(reader, tool, step->stations[i], "centre", step->centres);
+        wh_flow_refuse_timed(reader, tool, step->stations[i], "map", step->maps);
+    }
 }
 
 /* Its clock lets a process begin behind shut doors, and refuses a GET before the end. */
 static void check_clocks(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_step_t *step) {
-    for (size_t i = 0; i < step->station_count && is_real(tool) && step->process_us > 0; ++i) {
+    for (size_t i = 0; i < step->station_count && wh_flow_has_real(tool) && step->process_us > 0; ++i) {
         if (!tool->stations[step->stations[i]].is_real) {
             wh_reader_refuse(reader, "process", tool->stations[step->stations[i]].name,
                              "a station that takes time: one with `process` in the layout");

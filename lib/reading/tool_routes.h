@@ -22,6 +22,10 @@ const char *wh_timed_read_entry(wh_reader_t *reader, size_t index, char text[WH_
 void wh_timed_read_route(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *name,
                          wh_flow_route_t *route);
 
+/* Refuses a wanted field where a robot that is times alone comes to the station, or all are. */
+void wh_flow_refuse_timed(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t station, const char *field,
+                          bool is_wanted);
+
 /* Reads `routes` of a layout, if there are any, into a tool whose stations are read. */
 void wh_timed_read_routes(wh_reader_t *reader, wh_flow_tool_t *tool);
 

@@ -308,6 +308,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->flow);
     free(record->script);
     free(record->failure);
+    free(record->times_alone);
     free(record->never_came);
     memset(record, 0, sizeof *record);
 }

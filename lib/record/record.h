@@ -179,8 +179,9 @@ typedef struct {
     const char *unlooked;        /* says what nobody looked for, a constant text; null: nothing */
     wh_counted_record_t counted; /* slices that were left out */
     wh_dropped_t dropped;
-    char *never_came; /* the faults and errors on purpose that did not come; null: none; owned */
-    bool checked;     /* for collisions; then these are the smallest gaps */
+    char *times_alone; /* the robots beside those with axes at which nobody looked; null: none; owned */
+    char *never_came;  /* the faults and errors on purpose that did not come; null: none; owned */
+    bool checked;      /* for collisions; then these are the smallest gaps */
     wh_clearance_t clearances[WH_CLEARANCES];
     wh_flow_t *flow;     /* wafers through a tool of times alone; null: none; owned */
     wh_curves_t *curves; /* the gaps over time; null unless checked */
@@ -245,6 +246,7 @@ void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
 
 /* A run whose layout has no collision check says this. */
 #define WH_RECORD_TIMES_ALONE "places, ways and collisions were not looked for: the robots are times alone"
+#define WH_RECORD_SOME_ALONE "times alone, so that nobody looked at their places, ways and collisions"
 #define WH_RECORD_COUNTED_UNLOOKED "collisions and clearances"
 #define WH_RECORD_UNLOOKED "collisions were not looked for: the layout has no collision = true"
 

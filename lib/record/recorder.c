@@ -4,6 +4,7 @@
 #include "dropped.h"
 #include "seat.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -265,6 +266,21 @@ static void keep_wafers(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
     recorder->record->wafers = kept;
 }
 
+/* The names of the robots that are times alone; null: there are none. */
+static char *name_timed(const wh_flow_tool_t *timed) {
+    char *text = NULL;
+    size_t size = 0;
+    if (!timed) {
+        return NULL;
+    }
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    for (size_t r = 0; r < timed->robot_count; ++r) {
+        fprintf(out, "%s%s", r > 0 ? ", " : "", timed->robots[r].name);
+    }
+    (void)fclose(out);
+    return text;
+}
+
 void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     wh_record_t *record = recorder->record;
     for (size_t i = record->wait_count; i > 0; --i) {
@@ -286,6 +302,7 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
         record->hash = record->flow->figures.hash;
         record->simulated_s = (double)record->flow->figures.end_us / 1e6;
     }
+    record->times_alone = name_timed(recorder->layout->timed);
     record->unlooked = recorder->layout->tool        ? WH_RECORD_TIMES_ALONE
                        : recorder->layout->collision ? NULL
                                                      : WH_RECORD_UNLOOKED;

@@ -27,6 +27,8 @@ typedef enum {
     WH_FIGURE_PARTIAL, /* a log that does not have the complete run */
     WH_FIGURE_UNTOLD,  /* a log that does not tell whether the run passed */
     WH_FIGURE_FAILED,  /* the run failed, for any reason */
+    WH_FIGURE_ALONE,   /* robots that are times alone carry wafers, too, in a flow, of which a log
+                          does not tell */
     WH_FIGURE_NO_TIME, /* no slice was played */
     WH_FIGURE_NOWHERE, /* no station counts, or a log does not tell which ones do */
     WH_FIGURE_NO_WAFER,

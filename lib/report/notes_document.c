@@ -30,6 +30,12 @@ static void note_unlooked(const wh_record_t *record, char note[], size_t size) {
     }
 }
 
+static void note_alone(const wh_record_t *record, char note[], size_t size) {
+    if (record->times_alone) {
+        (void)snprintf(note, size, "%s: " WH_RECORD_SOME_ALONE ".", record->times_alone);
+    }
+}
+
 static void note_never_came(const wh_record_t *record, char note[], size_t size) {
     if (record->never_came) {
         (void)snprintf(note, size, "Never came, and so were not tried: %s.", record->never_came);
@@ -39,7 +45,7 @@ static void note_never_came(const wh_record_t *record, char note[], size_t size)
 /* Behind the notes of a log, or in their place: what nobody looked at. */
 void wh_notes_document_put(wh_json_text_t *text, const wh_document_t *document) {
     static void (*const kinds[])(const wh_record_t *record, char note[],
-                                 size_t size) = {note_counted, note_unlooked, note_never_came};
+                                 size_t size) = {note_counted, note_unlooked, note_alone, note_never_came};
     wh_json_text_begin(text, "notes", '[');
     for (size_t i = 0; i < document->note_count; ++i) {
         wh_json_text_value(text, NULL, wh_json_text(document->notes[i]));

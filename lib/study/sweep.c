@@ -234,6 +234,7 @@ static void note(const wh_record_t *record, wh_sweep_point_t *point) {
     point->checked = record->checked;
     point->never_came = record->never_came ? wh_text_copy(record->never_came) : NULL;
     point->is_timed = wh_record_is_timed(record);
+    point->has_timed = record->times_alone != NULL;
     point->is_cut = record->flow && wh_flow_is_cut(record->flow);
     for (size_t i = 0; record->ok && i < record->command_count; ++i) {
         point->caught = point->caught || record->commands[i].error != WH_OK;

@@ -34,6 +34,7 @@ typedef struct {
     double gap;           /* mm, the smallest of all, if collisions are looked for */
     bool checked;         /* for collisions */
     bool is_timed;        /* its robots are times alone: nobody looked at places and ways either */
+    bool has_timed;       /* some of them are, beside robots with axes */
     bool is_cut;          /* its flow was cut with wafers not at their ends */
     bool caught;          /* it is ok, and its script caught an error */
     char *never_came;     /* the faults and errors on purpose that did not come; null: none */

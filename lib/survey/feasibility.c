@@ -272,7 +272,9 @@ static void check_parts(wh_feasibility_t *check) {
     wh_feasibility_full(check);
     wh_feasibility_blades(check);
     for (size_t s = 0; s < check->layout->station_count; ++s) {
-        wh_feasibility_room(check, s);
+        if (wh_layout_is_served(check->layout, s)) {
+            wh_feasibility_room(check, s);
+        }
     }
 }
 

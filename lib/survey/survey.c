@@ -286,7 +286,9 @@ static void warn_of_untaught(job_t *job) {
     const wh_layout_station_t *station = &job->layout->stations[job->station];
     if (!station->taught) {
         wh_feasibility_add(job->check, WH_FINDING_REACH, (int32_t)job->station,
-                           "%s: taught = false: GET and PUT there are not looked at", station->name);
+                           "%s: %s: GET and PUT there are not looked at", station->name,
+                           wh_layout_is_served(job->layout, job->station) ? "taught = false"
+                                                                          : "no robot with axes serves it");
         wh_feasibility_warn(job->check);
     }
 }
@@ -451,7 +453,8 @@ bool wh_survey_open(wh_survey_t *survey, wh_sandbox_t *sandbox, const wh_layout_
     wh_tryout_open(&survey->tryout, &survey->mcs, layout);
     for (; good && job.station < layout->station_count; ++job.station) {
         wh_sandbox_renew(sandbox);
-        good = wh_sandbox_protect(L, look_at_station, &job, result);
+        good =
+            !wh_layout_is_served(layout, job.station) || wh_sandbox_protect(L, look_at_station, &job, result);
         add_finding(&job);
         warn_of_untaught(&job);
     }

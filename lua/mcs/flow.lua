@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pcall, rawget, tostring, type = error, ipairs, math, pcall, rawget, tostring, type
 
-return function(native, tasks, commands, lookup)
+return function(native, tasks, commands, lookup, slot_map)
   local flows = {}
   -- A handler that always answers "retry" comes to an end.
   local most_retries = 100
@@ -185,10 +185,23 @@ return function(native, tasks, commands, lookup)
     end, native.end_work, index)
   end
 
+  -- Plays the flow's present instant; the book of slots hears of the wafers that robots which are times alone have
+  -- carried.
+  local function step_once()
+    local seconds = native.step_flow()
+    local station, slot, is_there = native.next_carried()
+    while station do
+      local note = is_there and slot_map.note_put or slot_map.note_taken
+      note { station = station, slot = slot }
+      station, slot, is_there = native.next_carried()
+    end
+    return seconds
+  end
+
   -- Steps the flow whenever something has ended, or is to.
   local function step()
     local lane = tasks.current().lane
-    local seconds = native.step_flow()
+    local seconds = step_once()
     while seconds do
       native.hold_mechanisms(false)
       native.start { dwell = seconds }
@@ -205,7 +218,7 @@ return function(native, tasks, commands, lookup)
           native.fail_flow(type(problem) == "table" and problem.text or "STOPPED")
         end
       end
-      seconds = native.step_flow()
+      seconds = step_once()
     end
   end
 

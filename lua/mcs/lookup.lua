@@ -170,6 +170,12 @@ return function(native, errors)
     if index then
       return index
     end
+    for _, timed in ipairs(native.layout.timed_robots) do
+      if timed == name then
+        native.fail("NO_SUCH_ROBOT", ("%s is times alone: `flow` has it carry wafers (expected %s)"):format(lookup.quote(name),
+          robot_names()))
+      end
+    end
     native.fail("NO_SUCH_ROBOT", ("%s (expected %s)"):format(lookup.quote(name), robot_names()))
   end
 
@@ -191,8 +197,9 @@ return function(native, errors)
 
   local function check_serves(station, robot)
     if station and not station.by[robot] then
-      local text = "robot: %s (expected one that serves %s: %s)"
-      native.fail("BAD_ARGUMENT", text:format(native.layout.robots[robot].name, station.name, robot_names(station.by)))
+      local text, names = "robot: %s (expected one that serves %s: %s)", robot_names(station.by)
+      names = names ~= "" and names or "none with axes does"
+      native.fail("BAD_ARGUMENT", text:format(native.layout.robots[robot].name, station.name, names))
     end
   end
 
@@ -222,6 +229,7 @@ return function(native, errors)
       check_serves(station, robot)
       return robot
     elseif not lookup.has_several() then
+      check_serves(station, 1)
       return 1
     elseif station and station.robot then
       return station.robot

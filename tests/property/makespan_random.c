@@ -117,8 +117,10 @@ static void draw_plan(flow_case_t *flow, bool is_round) {
         flow->plan.downs = wh_array_new(1, sizeof *flow->plan.downs);
         flow->plan.down_count = 1;
         flow->plan.downs[0] =
-            (wh_flow_down_t){(int32_t)flow->tool.station_count - 1 - (int32_t)wh_test_below(3),
-                             random_us(is_round, 10, 300), random_us(is_round, 10, 200)};
+            (wh_flow_down_t){.station = (int32_t)flow->tool.station_count - 1 - (int32_t)wh_test_below(3),
+                             .at_us = random_us(is_round, 10, 300),
+                             .for_us = random_us(is_round, 10, 200),
+                             .robot = WH_FLOW_NONE};
     }
     flow_finish(flow);
 }
