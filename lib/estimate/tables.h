@@ -71,8 +71,8 @@ wh_status_t wh_move_table_open(wh_move_table_t *table, const char *path);
  * determined. */
 bool wh_move_table_estimate(wh_move_table_t *table, bool with_delay);
 
-/* True for an axis whose estimate is OK, with no move set aside and times that scatter about the fitted profile
- * by no more than rounding to 1 ms does: no real axis is so exact, so they look simulated. */
+/* True for an axis whose estimate is OK, with no move set aside and times that scatter about the fitted
+ * profile by no more than rounding to 1 ms does: no real axis is so exact, so they look simulated. */
 bool wh_axis_moves_look_simulated(const wh_axis_moves_t *moves);
 
 void wh_move_table_close(wh_move_table_t *table);

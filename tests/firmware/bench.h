@@ -3,23 +3,39 @@
  * and the vacuum switch is read back. `said` holds the events in words.
  *
  * To make it yours: put your firmware's registers into `tick`, your robot's kinematics into
- * `gripper_pose`, your stations into `stations` and `taught`. It needs libwaferhand.a and cmocka,
- * and runs on a host as on a Cortex-M. */
+ * `gripper_pose`, your stations into `stations` and `taught`. It needs libwaferhand.a and no test
+ * framework, is C99 and C++11, and runs on a host as on a Cortex-M. with_cmocka.h, with_unity.h,
+ * with_cpputest.h, with_gtest.h and with_catch2.h fit it into one. Without any, BENCH_FAIL ends the
+ * program with status 1. */
 #ifndef BENCH_H
 #define BENCH_H
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <waferhand.h>
 
+#if defined(__cplusplus)
+extern "C" {
+#endif
 #include "controller.h"
+#if defined(__cplusplus)
+}
+#endif
+
+/* Ends the test that runs, as failed; `text` says why. */
+#if !defined(BENCH_FAIL)
+#define BENCH_FAIL(text) (fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, text), exit(1))
+#endif
+#define BENCH_CHECK(condition)                                                                               \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            BENCH_FAIL(#condition);                                                                          \
+        }                                                                                                    \
+    } while (0)
 
 enum { STATIONS = 2, WAFERS = 2, SAID = 4000 };
 
@@ -53,7 +69,7 @@ static inline wh_pose_t gripper_pose(void) {
 static inline void note_events(void) {
     for (size_t i = 0; i < state.event_count; ++i) {
         const size_t length = strlen(said);
-        assert_true(wh_event_text(&state.events[i], NULL, said + length, SAID - length - 1) <
+        BENCH_CHECK(wh_event_text(&state.events[i], NULL, said + length, SAID - length - 1) <
                     SAID - length - 1);
         strcat(said, "\n");
     }
@@ -67,16 +83,16 @@ static inline void tick(void) {
     command.gripper_count = 1;
     command.grippers[0].base_from_gripper = gripper_pose();
     command.grippers[0].valve = registers.vacuum_on ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
-    assert_int_equal(wh_simulator_step(&machine, &command, &state), WH_OK);
+    BENCH_CHECK(wh_simulator_step(&machine, &command, &state) == WH_OK);
     command.fault_count = 0;
     registers.sensor = (state.sensors & 1U) != 0;
     note_events();
 }
 
 /* Wafer 0 lies in slot 1 of station 0, wafer 1 in slot 2 of station 1. The vacuum takes some time
- * to build up, and a released wafer settles. */
-static inline int set_up(void **unused) {
-    (void)unused;
+ * to build up, and a released wafer settles. Returns 0 if all is well. */
+static inline int bench_set_up(void) {
+    static const taught_t usual[STATIONS] = {{0, 700, 900, 3, 10, 3}, {90, 700, 900, 3, 10, 3}};
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, 1, NULL, 0};
     const wh_cell_t cell = {stations, STATIONS, wh_tolerance_paper(), WH_REAL(0.5), 0, true, 0, 0};
@@ -87,8 +103,7 @@ static inline int set_up(void **unused) {
     memset(&command, 0, sizeof command);
     memset(&registers, 0, sizeof registers);
     said[0] = '\0';
-    taught[0] = (taught_t){0, 700, 900, 3, 10, 3};
-    taught[1] = (taught_t){90, 700, 900, 3, 10, 3};
+    memcpy(taught, usual, sizeof taught);
     controller_init(&controller, &registers, taught, STATIONS);
     const bool good = wh_simulator_init(&machine, &config, &storage, &cell) == WH_OK &&
                       wh_simulator_set_physics(&machine, &physics) == WH_OK;
@@ -127,15 +142,15 @@ static inline void mend_it(void) {
 
 static inline void assert_said(const char *text) {
     if (!strstr(said, text)) {
-        print_error("not said: %s\n%s", text, said);
-        fail();
+        fprintf(stderr, "not said: %s\n%s", text, said);
+        BENCH_FAIL(text);
     }
 }
 
 static inline void assert_not_said(const char *text) {
     if (strstr(said, text)) {
-        print_error("said: %s\n%s", text, said);
-        fail();
+        fprintf(stderr, "said: %s\n%s", text, said);
+        BENCH_FAIL(text);
     }
 }
 
@@ -144,17 +159,17 @@ static inline void assert_lies_in(size_t wafer, int station, int slot) {
     wh_pose_t pose;
     int32_t holder;
     wh_place_t place;
-    assert_int_equal(wh_grasp_wafer(&machine.table, wafer, &pose, &holder), WH_OK);
-    assert_int_equal(holder, WH_NONE);
-    assert_true(wh_cell_locate(&machine.cell, &pose, &place));
-    assert_int_equal(place.station, station);
-    assert_int_equal(place.slot, slot);
-    assert_true(wh_real_abs(place.dx) < WH_REAL(0.1) && wh_real_abs(place.dy) < WH_REAL(0.1) &&
+    BENCH_CHECK(wh_grasp_wafer(&machine.table, wafer, &pose, &holder) == WH_OK);
+    BENCH_CHECK(holder == WH_NONE);
+    BENCH_CHECK(wh_cell_locate(&machine.cell, &pose, &place));
+    BENCH_CHECK(place.station == station);
+    BENCH_CHECK(place.slot == slot);
+    BENCH_CHECK(wh_real_abs(place.dx) < WH_REAL(0.1) && wh_real_abs(place.dy) < WH_REAL(0.1) &&
                 wh_real_abs(place.dz) < WH_REAL(0.1));
 }
 
 static inline void assert_held(size_t wafer) {
-    assert_int_equal(wafers[wafer].holder, 0);
+    BENCH_CHECK(wafers[wafer].holder == 0);
 }
 
 #endif

@@ -2,7 +2,7 @@
  * libwaferhand.a it needs libwaferhand_collision.a and libccd, so it has no float build. */
 #include "waferhand_collision.h"
 
-#include "bench.h"
+#include "with_cmocka.h"
 
 /* Part 0 is the blade, 160 x 150 x 3 mm, its upper side the contact plane; parts 1 and 2 are wafers
  * 0 and 1. */

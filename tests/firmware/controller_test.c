@@ -1,5 +1,5 @@
-/* An example to copy: tests of the firmware in controller.c. bench.h simulates the machine around it. */
-#include "bench.h"
+/* An example to copy: tests of the firmware in controller.c. bench.h simulates the machine around it, here with cmocka. */
+#include "with_cmocka.h"
 
 /* -------------------------------------------------------------------------------------------------- good commands */
 

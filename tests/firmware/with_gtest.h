@@ -1,0 +1,13 @@
+/* bench.h for GoogleTest: TEST_F(Bench, a_test). */
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#define BENCH_FAIL(text) throw std::runtime_error(text)
+#include "bench.h"
+
+struct Bench : testing::Test {
+    void SetUp() override {
+        BENCH_CHECK(bench_set_up() == 0);
+    }
+};
