@@ -27,7 +27,7 @@ void wh_exchange_init(wh_exchange_t *exchange, size_t axes, uint32_t lag) {
 /* ------------------------------------------------------------------------------------------------ hearing */
 
 /* A frame that overtook another one has a smaller count and a smaller number; a board that was reset has a
- * smaller count and goes on. */
+ * smaller count and goes on. The first frame of all may be of a board that has answered other runs. */
 static void count_sent(wh_exchange_t *exchange, uint32_t sent, uint32_t number) {
     const bool is_older = exchange->is_heard && number < exchange->last_number;
     if (is_older && sent < exchange->last_sent) {
@@ -39,7 +39,7 @@ static void count_sent(wh_exchange_t *exchange, uint32_t sent, uint32_t number) 
         exchange->is_reset = true;
         exchange->last_sent = 0;
     }
-    if (sent > exchange->last_sent + 1) {
+    if (exchange->is_heard && sent > exchange->last_sent + 1) {
         exchange->counters.lost_answers += sent - exchange->last_sent - 1;
     }
     exchange->is_heard = true;

@@ -116,6 +116,17 @@ static void answers_that_the_line_lost_are_counted(void **state) {
     assert_int_equal(exchange.counters.lost_answers, 1);
 }
 
+/* It has not begun anew, so its count goes on. */
+static void a_board_that_has_answered_other_runs_has_lost_nothing(void **state) {
+    (void)state;
+    wh_exchange_init(&exchange, AXES, 1);
+    assert_int_equal(hear(0, 5001), WH_EXCHANGE_TAKEN);
+    (void)wh_exchange_take(&exchange);
+    assert_int_equal(hear(1, 5002), WH_EXCHANGE_TAKEN);
+    assert_int_equal(exchange.counters.lost_answers, 0);
+    assert_int_equal(exchange.counters.resets, 0);
+}
+
 /* ------------------------------------------------------------------------------------------------ the model */
 
 enum { SLICES = 150, FLIGHT = 400 };
@@ -193,6 +204,7 @@ int main(void) {
         cmocka_unit_test(late_doubled_unknown_and_other_answers_are_told_apart),
         cmocka_unit_test(a_board_that_begins_anew_is_told),
         cmocka_unit_test(answers_that_the_line_lost_are_counted),
+        cmocka_unit_test(a_board_that_has_answered_other_runs_has_lost_nothing),
         cmocka_unit_test(slices_have_the_answers_that_came_in_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
