@@ -123,7 +123,8 @@ static void move_wafer(const problem_t *problem, node_t *node, const doing_t *do
     node->at[w] = OVER;
     if (doing->place != WH_FLOW_NONE) {
         const wh_flow_step_t *step = wh_flow_step_of(problem->plan, w, node->step[w]);
-        node->ready_us[w] += wh_flow_step_us(step, &problem->tool->stations[doing->to]);
+        node->ready_us[w] +=
+            wh_flow_step_us(step, &problem->tool->stations[doing->to], problem->plan->wafers[w].recipe);
         node->at[w] = (int16_t)doing->place;
         node->wafer[doing->place] = (int16_t)w;
         node->taken_us[doing->place] = doing->begin_us;
@@ -298,10 +299,15 @@ static void expand_wafer(search_t *search, size_t level, const node_t *node, int
     }
 }
 
-/* True if an earlier wafer of its lot waits in its first place, too: that one goes first. */
+/* True if an earlier wafer of its lot and its recipe waits in its first place, too: that one goes first. */
 static bool is_behind(const problem_t *problem, const node_t *node, int32_t w) {
-    return node->at[w] == HOME && w > 0 && node->at[w - 1] == HOME &&
-           problem->plan->wafers[w].lot == problem->plan->wafers[w - 1].lot;
+    const wh_flow_wafer_t *wafers = problem->plan->wafers;
+    for (int32_t i = w - 1; node->at[w] == HOME && i >= 0 && wafers[i].lot == wafers[w].lot; --i) {
+        if (node->at[i] == HOME && wafers[i].recipe == wafers[w].recipe) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static void expand(search_t *search, size_t level, const node_t *node) {

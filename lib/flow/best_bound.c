@@ -69,7 +69,8 @@ static int64_t least_process_us(const problem_t *problem, int32_t wafer, int32_t
     const wh_flow_step_t *step = wh_flow_step_of(problem->plan, wafer, k);
     int64_t least = WH_FLOW_NEVER;
     for (size_t i = 0; i < step->station_count; ++i) {
-        least = less(least, wh_flow_step_us(step, &problem->tool->stations[step->stations[i]]));
+        least = less(least, wh_flow_step_us(step, &problem->tool->stations[step->stations[i]],
+                                            problem->plan->wafers[wafer].recipe));
     }
     return least;
 }

@@ -32,6 +32,9 @@ static size_t count_robots(const wh_flow_tool_t *tool, int32_t station) {
 static char *refuse_stations(const wh_flow_tool_t *tool) {
     for (int32_t s = 0; s < (int32_t)tool->station_count; ++s) {
         const wh_flow_station_t *station = &tool->stations[s];
+        if (station->has_carriers) {
+            return refuse(station->name, "load ports without `port`");
+        }
         if (station->is_lock || wh_flow_is_cleaned(station) || station->window_us != WH_FLOW_NEVER) {
             return refuse(station->name, "stations without pump, clean and window");
         }

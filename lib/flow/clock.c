@@ -22,6 +22,7 @@ void wh_clock_start(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_pla
     for (int32_t i = 0; i < of->slots; ++i) {
         memset(&places[i], 0, sizeof places[i]);
         places[i].wafer = WH_FLOW_NONE;
+        places[i].own_us = WH_FLOW_NONE;
     }
 }
 
@@ -44,7 +45,7 @@ static void tell_pump(const wh_clock_teller_t *teller, wh_clock_kind_t kind, wh_
 /* -------------------------------------------------------------------------------------------- time passes */
 
 bool wh_clock_cleans_next(const wh_flow_station_t *of, const wh_clock_place_t *place) {
-    return wh_flow_is_clean_due(of, place->since_clean);
+    return wh_flow_is_clean_due(of, place->recipe, place->since_clean);
 }
 
 static bool cleans_around(const wh_flow_station_t *of, const wh_clock_place_t *place) {
@@ -121,8 +122,9 @@ void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
 
 /* Until a clean of an empty place is due; INFINITY: never. */
 static double until_idle_clean(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
-    const bool comes = place->phase == WH_CLOCK_FREE && of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER;
-    return comes ? (double)(of->idle_us - (now_us - place->empty_us)) : (double)INFINITY;
+    const int64_t idle_us = wh_flow_treatment(of, place->recipe).idle_us;
+    const bool comes = place->phase == WH_CLOCK_FREE && of->clean_us > 0 && idle_us != WH_FLOW_NEVER;
+    return comes ? (double)(idle_us - (now_us - place->empty_us)) : (double)INFINITY;
 }
 
 double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
@@ -139,7 +141,8 @@ double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
 /* ------------------------------------------------------------------------------------ wafers come and go */
 
 static bool is_idle_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
-    return of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= of->idle_us;
+    const int64_t idle_us = wh_flow_treatment(of, place->recipe).idle_us;
+    return of->clean_us > 0 && idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= idle_us;
 }
 
 bool wh_clock_is_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
@@ -201,8 +204,8 @@ static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t 
     place->wafer = seen->wafer;
     place->done_us = now_us;
     place->is_cut = place->is_forced = false;
-    place->has_own = place->has_next;
-    place->own_us = place->next_us;
+    place->own_us = place->has_next ? place->next_us : WH_FLOW_NONE;
+    place->recipe = place->has_next ? place->next_recipe : seen->recipe;
     place->has_next = false;
     if (place->phase == WH_CLOCK_CLEANING) {
         tell_place(teller, WH_CLOCK_CLEAN_MISSED, slot, place->wafer, now_us, (int64_t)place->left_us);

@@ -30,18 +30,20 @@ typedef struct {
     int32_t wafer;       /* that has come and not left, or WH_FLOW_NONE */
     int32_t since_clean; /* wafers that have left it since */
     bool is_clean_due;
-    bool is_around;         /* CLEANING: around the wafer that was processed there */
-    bool is_away;           /* the wafer was lifted or moved, and has not left the station */
-    bool is_bad;            /* it lies there, but not so that a process may begin */
-    bool is_cut;            /* WAITING: its process had begun, and was cut */
-    bool is_forced;         /* a command may take it though its process has not begun */
-    bool has_own, has_next; /* its wafer's process takes `own_us`, that of the next wafer `next_us` */
-    int64_t own_us, next_us;
-    double left_us;    /* of the process or the clean that runs */
-    int64_t begun_us;  /* when that began */
-    int64_t done_us;   /* when the wafer's process ended; without one, when the wafer came */
-    int64_t lifted_us; /* when it was lifted last */
-    int64_t empty_us;  /* FREE: since when */
+    bool is_around;          /* CLEANING: around the wafer that was processed there */
+    bool is_away;            /* the wafer was lifted or moved, and has not left the station */
+    bool is_bad;             /* it lies there, but not so that a process may begin */
+    bool is_cut;             /* WAITING: its process had begun, and was cut */
+    bool is_forced;          /* a command may take it though its process has not begun */
+    bool has_next;           /* the next two are told; else they are the station's, and the wafer's own */
+    int64_t own_us, next_us; /* how long its wafer's process takes, and the next wafer's; WH_FLOW_NONE: as the
+                              * station says */
+    int32_t recipe, next_recipe; /* of its wafer, or of the last one; of the next wafer */
+    double left_us;              /* of the process or the clean that runs */
+    int64_t begun_us;            /* when that began */
+    int64_t done_us;             /* when the wafer's process ended; without one, when the wafer came */
+    int64_t lifted_us;           /* when it was lifted last */
+    int64_t empty_us;            /* FREE: since when */
 } wh_clock_place_t;
 
 typedef struct {
@@ -94,6 +96,7 @@ typedef struct {
     bool is_bad;     /* so that no process may begin */
     bool keeps;      /* the place's own wafer does not lie in it, and has not left the station */
     bool is_lifted;  /* the wafer that seems to lie in it is on a blade */
+    int32_t recipe;  /* of that wafer, by its number; 0: none */
     bool is_awaited; /* a command that was not refused brings a wafer: the idle time is over */
 } wh_clock_seen_t;
 
@@ -118,7 +121,7 @@ double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
 
 /* How long the place's wafer is processed there. */
 static inline int64_t wh_clock_process_us(const wh_flow_station_t *of, const wh_clock_place_t *place) {
-    return place->has_own ? place->own_us : of->process_us;
+    return place->own_us != WH_FLOW_NONE ? place->own_us : wh_flow_treatment(of, place->recipe).process_us;
 }
 
 /* This is seen of its slots now. `is_closed`: no blade is in it and its doors are shut. All that can begin

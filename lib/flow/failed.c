@@ -22,8 +22,8 @@ int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t s
     const int32_t last = wh_flow_last_step(state->plan, wafer);
     bool is_out = false;
     for (int32_t next = step + 1; next <= last; ++next) {
-        const bool has_failed =
-            state->failed > 0 && wh_flow_step_has_failed(state, wh_flow_step_of(state->plan, wafer, next));
+        const bool has_failed = state->failures.stations > 0 &&
+                                wh_flow_step_has_failed(state, wh_flow_step_of(state->plan, wafer, next));
         if (!has_failed && !(is_out && is_of_step(state, wafer, next, place))) {
             return next;
         }
@@ -51,7 +51,7 @@ static void end_aboard(wh_flow_state_t *state, int32_t wafer) {
     at->is_moving = false;
     at->done_us = WH_FLOW_NEVER;
     wh_flow_note_over(state);
-    ++state->lost;
+    ++state->failures.wafers;
 }
 
 bool wh_flow_recount(wh_flow_state_t *state, int32_t wafer) {
@@ -94,7 +94,7 @@ static void end_lying(wh_flow_state_t *state, int32_t wafer, bool is_lost) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
     const wh_flow_event_t event = wh_flow_event_at(state, WH_FLOW_EVENT_ENDS, wafer, state->now_us);
     at->is_lost = is_lost;
-    state->lost += is_lost ? 1 : 0;
+    state->failures.wafers += is_lost ? 1 : 0;
     wh_flow_tell(state, &event);
     at->is_over = true;
     at->done_us = WH_FLOW_NEVER;
@@ -104,7 +104,7 @@ static void end_lying(wh_flow_state_t *state, int32_t wafer, bool is_lost) {
 }
 
 void wh_flow_end_routes(wh_flow_state_t *state) {
-    for (int32_t w = 0; state->failed > 0 && w < (int32_t)state->plan->wafer_count; ++w) {
+    for (int32_t w = 0; state->failures.stations > 0 && w < (int32_t)state->plan->wafer_count; ++w) {
         const wh_flow_wafer_state_t *at = &state->wafers[w];
         if (at->is_over || at->place == WH_FLOW_NONE || at->taker != WH_FLOW_NONE) {
             continue;

@@ -15,7 +15,7 @@ const char *const wh_flow_robot_class_names[WH_FLOW_ROBOT_CLASSES] = {
 const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES] = {
     "process", "blocked", "handled", "stored", "clean", "pump", "down", "empty"};
 
-const char *const wh_flow_fate_names[] = {"inside", "end", "shortened", "lost"};
+const char *const wh_flow_fate_names[] = {"inside", "end", "shortened", "lost", "skipped"};
 
 /* Cleans, pumps and failures of a place and its station, summed up to now. */
 typedef struct {
@@ -277,7 +277,8 @@ static bool is_real_door(const wh_flow_tool_t *tool, const wh_flow_event_t *even
 /* Where visits are kept: what else they tell, and what happened beside them. */
 static void note_event(measure_t *measure, const wh_flow_event_t *event) {
     const bool is_doing = event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
-                          event->kind == WH_FLOW_EVENT_DOWN || is_real_door(measure->figures->tool, event);
+                          event->kind == WH_FLOW_EVENT_DOWN || event->kind == WH_FLOW_EVENT_COMES ||
+                          event->kind == WH_FLOW_EVENT_GOES || is_real_door(measure->figures->tool, event);
     if (event->kind == WH_FLOW_EVENT_PICK) {
         measure->open[event->wafer].picked_us = event->end_us;
     } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
@@ -378,7 +379,9 @@ static void take_back(measure_t *measure, const wh_flow_state_t *state, int32_t 
 /* Those that are lost on an arm are told at last. */
 static void keep_fate(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t wafer) {
     wh_flow_fate_t *fate = &figures->fates[wafer];
-    if (state->wafers[wafer].is_lost) {
+    if (state->plan->wafers[wafer].is_skipped) {
+        *fate = WH_FLOW_FATE_SKIPPED;
+    } else if (state->wafers[wafer].is_lost) {
         *fate = WH_FLOW_FATE_LOST;
     } else if (!state->wafers[wafer].is_over) {
         *fate = WH_FLOW_FATE_INSIDE;

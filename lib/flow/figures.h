@@ -38,16 +38,17 @@ typedef enum {
     WH_FLOW_FATE_INSIDE,    /* not yet, or it never came */
     WH_FLOW_FATE_END,       /* at its end */
     WH_FLOW_FATE_SHORTENED, /* at its end, without steps whose stations have failed */
-    WH_FLOW_FATE_LOST       /* in a station that failed, or on an arm with nowhere to go */
+    WH_FLOW_FATE_LOST,      /* in a station that failed, or on an arm with nowhere to go */
+    WH_FLOW_FATE_SKIPPED    /* it was left in its carrier */
 } wh_flow_fate_t;
 
-/* "inside", "end", "shortened", "lost" */
+/* "inside", "end", "shortened", "lost", "skipped" */
 extern const char *const wh_flow_fate_names[];
 
 /* A station's own doing. */
 typedef struct {
     /* WH_FLOW_EVENT_CLEAN, WH_FLOW_EVENT_PUMP, WH_FLOW_EVENT_DOWN; of real doors WH_FLOW_EVENT_OPEN and
-     * WH_FLOW_EVENT_SHUT */
+     * WH_FLOW_EVENT_SHUT; of load ports WH_FLOW_EVENT_COMES and WH_FLOW_EVENT_GOES */
     wh_flow_event_kind_t kind;
     int32_t station, place; /* place: of a clean */
     int32_t robot;          /* of a door, or WH_FLOW_NONE */

@@ -41,7 +41,8 @@ void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     *result = (wh_flow_result_t){.end = engine->end,
                                  .makespan_us = state->last_us,
                                  .cycle_us = WH_FLOW_NEVER,
-                                 .lost = state->lost,
+                                 .lost = state->failures.wafers,
+                                 .skipped = state->calls.skipped,
                                  .left = plan->wafer_count - state->over,
                                  .asked = engine->asked};
     result->may_block =

@@ -22,6 +22,7 @@ typedef struct {
     size_t over;    /* wafers at their ends, without dummies */
     size_t left;    /* wafers that are not at their ends, with dummies */
     size_t lost;    /* wafers in stations that failed, or on arms with nowhere to go; not among those left */
+    size_t skipped; /* wafers that were left in their carriers; not among those left */
     char *why;      /* null if done; see wh_flow_result_close */
     uint64_t asked; /* how often a rule was asked */
     /* Rule swap, several robots, and stations that lead back to themselves: wafers may block each other for

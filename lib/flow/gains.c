@@ -23,7 +23,10 @@ static void shorten_station(wh_flow_tool_t *tool, int32_t station, int32_t ppm) 
     wh_flow_station_t *of = &tool->stations[station];
     of->less_ppm = ppm;
     shorten(&of->process_us, 1, ppm);
+    wh_flow_hasten_recipes(of, ppm);
     shorten(&of->clean_us, 1, ppm);
+    shorten(&of->comes_us, 1, ppm);
+    shorten(&of->goes_us, 1, ppm);
     shorten(of->pump_us, 2, ppm);
     shorten(of->empty_pump_us, 2, ppm);
     for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {

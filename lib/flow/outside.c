@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "calls.h"
 #include "transfer.h"
 
 /* --------------------------------------------------------------------------------------- between instants */
@@ -154,12 +155,61 @@ void wh_flow_set_down(const wh_flow_state_t *state, int32_t station, bool is_dow
     }
 }
 
+/* True if a carrier is still to call at the station. */
+static bool is_to_come(const wh_flow_state_t *state, int32_t station) {
+    bool is_any = false;
+    for (size_t i = 0; i < state->plan->call_count; ++i) {
+        is_any = is_any || (state->plan->calls[i].station == station &&
+                            state->calls.of[i].phase == WH_FLOW_CALL_AWAITED);
+    }
+    return is_any;
+}
+
+/* True if a lot of this call is not over. */
+static bool has_open_lot(const wh_flow_state_t *state, int32_t call) {
+    bool has_any = false;
+    for (size_t i = 0; i < state->plan->lot_count; ++i) {
+        has_any = has_any || (state->plan->lots[i].call == call && !wh_flow_is_lot_over(state, (int32_t)i));
+    }
+    return has_any;
+}
+
+bool wh_flow_is_port_needed(const wh_flow_state_t *state, int32_t station) {
+    const int32_t call = state->stations[station].call;
+    return (call > 0 && has_open_lot(state, call)) ||
+           ((call > 0 || !is_to_come(state, station)) && wh_flow_is_awaited(state, station));
+}
+
+/* A carrier comes or goes, or somebody is to open the port. */
+static bool is_port_busy(const wh_flow_state_t *state, int32_t station) {
+    const int32_t call = state->stations[station].call;
+    if (!state->tool->stations[station].is_real_port) {
+        return false;
+    }
+    return (call > 0 && (state->calls.of[call - 1].phase == WH_FLOW_CALL_COMING ||
+                         state->calls.of[call - 1].phase == WH_FLOW_CALL_GOING)) ||
+           (state->stations[station].real.is_port_shut && wh_flow_is_port_needed(state, station));
+}
+
+void wh_flow_tell_call(wh_flow_state_t *state, int32_t station) {
+    const int32_t call = state->stations[station].call;
+    if (call > 0) {
+        state->calls.of[call - 1].is_told = true;
+    }
+}
+
+void wh_flow_see_port(wh_flow_state_t *state, int32_t station, bool is_open, bool has_carrier, bool runs) {
+    state->stations[station].real.is_port_shut = !is_open;
+    state->stations[station].real.has_carrier = has_carrier;
+    state->stations[station].real.runs = runs;
+}
+
 bool wh_flow_is_real_busy(const wh_flow_state_t *state) {
     bool is_busy = false;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         const wh_flow_station_state_t *station = &state->stations[i];
-        is_busy = is_busy || station->real.runs || station->real.is_shutting ||
-                  station->real.work_wafer != WH_FLOW_NONE;
+        is_busy = is_busy || is_port_busy(state, (int32_t)i) || station->real.runs ||
+                  station->real.is_shutting || station->real.work_wafer != WH_FLOW_NONE;
     }
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
         const wh_flow_action_t action = state->robots[r].action;

@@ -21,6 +21,9 @@ void wh_flow_tell_end(wh_flow_state_t *state, int32_t robot);
 /* The station's real door is shut behind a blade. */
 void wh_flow_tell_shut(wh_flow_state_t *state, int32_t station);
 
+/* The carrier that came to the real load port is open and mapped, or the one that went is gone. */
+void wh_flow_tell_call(wh_flow_state_t *state, int32_t station);
+
 /* The work in a step, an ALIGN or a FLIP, has ended. */
 void wh_flow_tell_worked(wh_flow_state_t *state, int32_t station);
 
@@ -45,6 +48,12 @@ void wh_flow_tell_closed(wh_flow_state_t *state, int32_t station, int64_t at_us)
  * flow began. */
 void wh_flow_see_station(wh_flow_state_t *state, int32_t station, const wh_flow_station_t *of,
                          const wh_clock_t *clock, const wh_clock_place_t places[], int64_t began_us);
+
+/* The load port stands so. `has_carrier`: one is there, comes or goes; `runs`: a step. */
+void wh_flow_see_port(wh_flow_state_t *state, int32_t station, bool is_open, bool has_carrier, bool runs);
+
+/* True if wafers that have come are to leave the load port, to end in it or to pass it. */
+bool wh_flow_is_port_needed(const wh_flow_state_t *state, int32_t station);
 
 /* ---- for the engine */
 

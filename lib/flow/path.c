@@ -4,8 +4,9 @@
 
 #include "../text/array.h"
 
-const char *const wh_flow_path_words[WH_FLOW_PATH_WORDS] = {
-    "move", "door", "pick", "place", "swap", "process", "clean", "pump", "down", "lot", "takt", "wait"};
+const char *const wh_flow_path_words[WH_FLOW_PATH_WORDS] = {"move",    "door",  "pick", "place", "swap",
+                                                            "process", "clean", "pump", "down",  "lot",
+                                                            "carrier", "takt",  "wait"};
 
 void wh_flow_log_add(wh_flow_log_t *log, const wh_flow_event_t *event) {
     if (event->kind != WH_FLOW_EVENT_STAY && event->kind != WH_FLOW_EVENT_LEFT) {
@@ -42,7 +43,8 @@ static const wh_flow_path_word_t words_of_events[] = {
     [WH_FLOW_EVENT_CLEAN] = WH_FLOW_PATH_CLEAN, [WH_FLOW_EVENT_PUMP] = WH_FLOW_PATH_PUMP,
     [WH_FLOW_EVENT_DOWN] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_STAY] = WH_FLOW_PATH_WAIT,
     [WH_FLOW_EVENT_SHUT] = WH_FLOW_PATH_DOOR,   [WH_FLOW_EVENT_LEFT] = WH_FLOW_PATH_WAIT,
-    [WH_FLOW_EVENT_HELD] = WH_FLOW_PATH_DOWN};
+    [WH_FLOW_EVENT_HELD] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_COMES] = WH_FLOW_PATH_CARRIER,
+    [WH_FLOW_EVENT_GOES] = WH_FLOW_PATH_CARRIER};
 
 static void add_part(path_t *path, wh_flow_path_word_t word, int32_t robot, int32_t station, int64_t us) {
     for (size_t i = 0; i < path->count; ++i) {
@@ -369,11 +371,29 @@ static cause_t cause_of_process(const path_t *path, const wh_flow_event_t *event
     return best;
 }
 
+/* The access that took the last wafer out of the place before an event there began, or null. */
+static const wh_flow_event_t *last_taking(const path_t *path, const wh_flow_event_t *event) {
+    for (size_t i = first_ending(path->log, event->begin_us + 1); i > 0; --i) {
+        const wh_flow_event_t *before = &path->log->events[i - 1];
+        if (takes(before) && before->place == event->place) {
+            return before;
+        }
+    }
+    return NULL;
+}
+
+/* How long the place stays empty before a clean. */
+static int64_t idle_of(const path_t *path, const wh_flow_event_t *event, const wh_flow_event_t *taking) {
+    const int32_t recipe = taking ? wh_flow_recipe_of(path->plan, taking->wafer, taking->step) : 0;
+    return wh_flow_treatment(&path->tool->stations[event->station], recipe).idle_us;
+}
+
 /* A clean of an empty place begins when the door is shut behind its wafer, when a failure ends, or when no
  * wafer came for so long. */
 static cause_t cause_of_clean(const path_t *path, const wh_flow_event_t *event) {
     cause_t best = {.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
-    const int64_t us = event->begin_us, idle_us = path->tool->stations[event->station].idle_us;
+    const wh_flow_event_t *taking = last_taking(path, event);
+    const int64_t us = event->begin_us, idle_us = idle_of(path, event, taking);
     const wh_flow_event_t out = {
         .kind = WH_FLOW_EVENT_PLACE, .station = event->station, .place = event->place};
     const aim_t aim = {&out, NULL};
@@ -387,13 +407,9 @@ static cause_t cause_of_clean(const path_t *path, const wh_flow_event_t *event) 
                    ? best
                    : (cause_t){.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
     }
-    for (size_t i = first_ending(path->log, us - idle_us);
-         i < path->log->count && path->log->events[i].end_us == us - idle_us; ++i) {
-        if (takes(&path->log->events[i]) && path->log->events[i].place == event->place) {
-            return (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, &path->log->events[i], false};
-        }
-    }
-    return best;
+    return taking && taking->end_us == us - idle_us
+               ? (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, taking, false}
+               : best;
 }
 
 static cause_t cause_of(const path_t *path, const wh_flow_event_t *event) {

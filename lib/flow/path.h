@@ -16,8 +16,9 @@ typedef enum {
     WH_FLOW_PATH_CLEAN,
     WH_FLOW_PATH_PUMP,
     WH_FLOW_PATH_DOWN,
-    WH_FLOW_PATH_LOT,  /* until a lot arrives */
-    WH_FLOW_PATH_TAKT, /* between two wafers' starts */
+    WH_FLOW_PATH_LOT,     /* until a lot arrives */
+    WH_FLOW_PATH_CARRIER, /* that comes or goes */
+    WH_FLOW_PATH_TAKT,    /* between two wafers' starts */
     /* Nothing known ended at the instant at which it goes on, such as a clean for want of wafers. */
     WH_FLOW_PATH_WAIT,
     WH_FLOW_PATH_WORDS

@@ -26,6 +26,7 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     }
     free(plan->routes);
     free(plan->lots);
+    free(plan->calls);
     free(plan->wafers);
     free(plan->downs);
     for (size_t i = 0; plan->turns && i < tool->station_count; ++i) {
@@ -34,6 +35,11 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     free(plan->turns);
     free(plan->lists);
     memset(plan, 0, sizeof *plan);
+}
+
+int32_t wh_flow_recipe_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
+    const int32_t of_step = wh_flow_step_of(plan, wafer, step)->recipe;
+    return of_step > 0 ? of_step : plan->wafers[wafer].recipe;
 }
 
 bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot) {
@@ -125,6 +131,48 @@ static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t 
     }
 }
 
+/* True if a station of the wafer's route has times by recipe. */
+static bool meets_recipes(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
+    bool meets = false;
+    for (int32_t k = 1; k <= wh_flow_last_step(plan, w); ++k) {
+        const wh_flow_step_t *step = wh_flow_step_of(plan, w, k);
+        for (size_t i = 0; i < step->station_count; ++i) {
+            meets = meets || tool->stations[step->stations[i]].has_recipes;
+        }
+    }
+    return meets;
+}
+
+static char *check_recipe(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
+    const int32_t recipe = plan->wafers[w].recipe;
+    return recipe == 0 || meets_recipes(plan, tool, w)
+               ? NULL
+               : problem_of("%s has the recipe %s, but no station of route %s has times by recipe (expected "
+                            "one, or no recipe)",
+                            plan->wafers[w].name, tool->recipes.names[recipe - 1],
+                            wh_flow_route_of(plan, w)->name);
+}
+
+static bool has_axes(const wh_flow_tool_t *tool) {
+    bool has_any = false;
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        has_any = has_any || tool->robots[r].is_real;
+    }
+    return has_any;
+}
+
+/* The process in a last step. Wafers of a cell with axes may have recipes of their own, which are not known
+ * yet: then the longest. */
+static int64_t end_us(const wh_flow_tool_t *tool, const wh_flow_step_t *step,
+                      const wh_flow_station_t *station, int32_t recipe) {
+    int64_t longest_us = wh_flow_step_us(step, station, recipe);
+    for (int32_t i = 1; recipe == 0 && has_axes(tool) && i <= tool->recipes.count; ++i) {
+        const int64_t us = wh_flow_step_us(step, station, i);
+        longest_us = us > longest_us ? us : longest_us;
+    }
+    return longest_us;
+}
+
 /* A process in the last step would begin when the wafer is at its end: it would count nowhere. */
 static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     const int32_t k = wh_flow_last_step(plan, w);
@@ -137,7 +185,7 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
     }
     for (size_t i = 0; i < last->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[last->stations[i]];
-        const int64_t process_us = wh_flow_step_us(last, station);
+        const int64_t process_us = end_us(tool, last, station, plan->wafers[w].recipe);
         if (process_us > 0) {
             return problem_of(
                 "route %s: its last step, %d, is %s, which processes for %.6g s (expected one more "
@@ -159,7 +207,97 @@ static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32
         problem = check_way(plan, tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
                             last->stations[i]);
     }
+    problem = problem ? problem : check_recipe(plan, tool, w);
     return problem ? problem : check_end(plan, tool, w);
+}
+
+bool wh_flow_is_first_call(const wh_flow_plan_t *plan, const wh_flow_call_t *call) {
+    bool is_first = true;
+    for (const wh_flow_call_t *before = plan->calls; before < call; ++before) {
+        is_first = is_first && before->station != call->station;
+    }
+    return is_first;
+}
+
+/* True if wafers of both lots lie in one place: one carrier cannot bring both. */
+static bool do_overlap(const wh_flow_plan_t *plan, const wh_flow_lot_t *a, const wh_flow_lot_t *b) {
+    const int32_t first = plan->wafers[a->first_wafer].home, other = plan->wafers[b->first_wafer].home;
+    return first < other + (int32_t)b->wafer_count && other < first + (int32_t)a->wafer_count;
+}
+
+/* True if a lot that comes by this call comes from the same places. */
+static bool is_taken(const wh_flow_plan_t *plan, const wh_flow_lot_t *lot, size_t call) {
+    bool is_taken = false;
+    for (const wh_flow_lot_t *other = plan->lots; other < lot; ++other) {
+        is_taken = is_taken || (other->call == (int32_t)call + 1 && do_overlap(plan, other, lot));
+    }
+    return is_taken;
+}
+
+/* The number, from 1, of the call of another lot by which this one comes, too; 0: there is none. */
+static int32_t find_call(const wh_flow_plan_t *plan, const wh_flow_station_t *station, int32_t number,
+                         const wh_flow_lot_t *lot) {
+    for (size_t i = 0; i < plan->call_count; ++i) {
+        const wh_flow_call_t *call = &plan->calls[i];
+        const bool is_its =
+            station->is_real_port ? call->carrier == lot->carrier : call->arrives_us == lot->arrives_us;
+        if (call->station == number && is_its && !is_taken(plan, lot, i)) {
+            return (int32_t)i + 1;
+        }
+    }
+    return 0;
+}
+
+/* The call of the lot's carrier; a new one is added. 0: its station has no carriers that come and go. */
+static int32_t call_of(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, const wh_flow_lot_t *lot) {
+    const int32_t number = tool->place_stations[plan->wafers[lot->first_wafer].home];
+    const wh_flow_station_t *station = &tool->stations[number];
+    if (!station->has_carriers) {
+        return 0;
+    }
+    const int32_t found = find_call(plan, station, number, lot);
+    if (found > 0) {
+        plan->calls[found - 1].leaves = plan->calls[found - 1].leaves || lot->leaves;
+        return found;
+    }
+    wh_flow_call_t *call = &plan->calls[plan->call_count++];
+    *call = (wh_flow_call_t){number, lot->carrier, lot->arrives_us, lot->leaves, false};
+    call->is_there = !station->is_real_port && !station->is_absent && lot->arrives_us == 0 &&
+                     wh_flow_is_first_call(plan, call);
+    return (int32_t)plan->call_count;
+}
+
+static void find_calls(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
+    plan->calls = wh_array_new(plan->lot_count + 1, sizeof *plan->calls);
+    for (size_t i = 0; i < plan->lot_count; ++i) {
+        plan->lots[i].call = call_of(plan, tool, &plan->lots[i]);
+    }
+}
+
+/* True if some carrier comes to the station, or is there. */
+static bool is_called(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t station) {
+    const wh_flow_station_t *of = &tool->stations[station];
+    bool is_called = !of->has_carriers || of->is_real_port || !of->is_absent;
+    for (size_t i = 0; i < plan->call_count; ++i) {
+        is_called = is_called || plan->calls[i].station == station;
+    }
+    return is_called;
+}
+
+static char *check_ports(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        for (int32_t k = 1; k <= wh_flow_last_step(plan, w); ++k) {
+            const wh_flow_step_t *step = wh_flow_step_of(plan, w, k);
+            for (size_t i = 0; i < step->station_count; ++i) {
+                if (!is_called(plan, tool, step->stations[i])) {
+                    return problem_of("%s goes to %s, a load port without a carrier (expected a lot that "
+                                      "comes there, or another `port.state` than absent)",
+                                      plan->wafers[w].name, tool->stations[step->stations[i]].name);
+                }
+            }
+        }
+    }
+    return NULL;
 }
 
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
@@ -179,5 +317,6 @@ char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
             return problem;
         }
     }
-    return NULL;
+    find_calls(plan, tool);
+    return check_ports(plan, tool);
 }

@@ -9,7 +9,9 @@ typedef struct {
     int32_t lot, home; /* home: a place */
     int32_t back;      /* the place where it ends, or WH_FLOW_NONE: the best of the last step */
     int32_t back_station;
-    bool goes_back; /* that is one more step, behind those of its route */
+    bool goes_back;  /* that is one more step, behind those of its route */
+    int32_t recipe;  /* its number; 0: none */
+    bool is_skipped; /* it is left where it lies: its carrier brought it so that nobody may take it */
 } wh_flow_wafer_t;
 
 typedef struct {
@@ -17,9 +19,21 @@ typedef struct {
     int32_t route, priority;
     int64_t arrives_us;
     size_t first_wafer, wafer_count;
-    bool is_dummy;  /* its wafers are moved, and not counted */
-    bool is_mapped; /* a real robot maps the station before it takes the first one */
+    bool is_dummy;   /* its wafers are moved, and not counted */
+    bool is_mapped;  /* a real robot maps the station before it takes the first one */
+    int32_t carrier; /* of a cell with axes: its number in the layout, from 1; 0: none is said */
+    bool leaves;     /* its carrier goes away when it is over */
+    int32_t call;    /* the number of that carrier's call, from 1; 0: it comes without */
 } wh_flow_lot_t;
+
+/* A carrier's stay at a load port, with one lot or several: those that come there at one time; in a cell with
+ * axes those of one carrier. */
+typedef struct {
+    int32_t station, carrier; /* carrier: as of a lot; 0: the one that is there, or that comes */
+    int64_t arrives_us;       /* of the first lot */
+    bool leaves;
+    bool is_there; /* at the beginning, and open */
+} wh_flow_call_t;
 
 /* A station that fails, or a robot that is held: it ends what it has begun, and begins nothing meanwhile. */
 typedef struct {
@@ -102,6 +116,8 @@ typedef struct {
     wh_flow_step_t *backs;          /* by station: the step back to it */
     wh_flow_lot_t *lots;            /* by arrival */
     size_t lot_count;
+    wh_flow_call_t *calls; /* in the order in which their lots arrive */
+    size_t call_count;
     wh_flow_wafer_t *wafers; /* lot after lot */
     size_t wafer_count;
     wh_flow_down_t *downs;
@@ -122,13 +138,17 @@ typedef struct {
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or what
- * is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
- * whose places are all kept empty, the same station twice in succession, a process in the last step. */
+/* To be called once when all is filled: numbers the steps, finds the ways back and the calls of carriers.
+ * Returns null, or what is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers
+ * in one place, a step whose places are all kept empty, the same station twice in succession, a process in
+ * the last step, a step at a load port to which no carrier comes. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
 /* True if the robot serves one of the step's stations. */
 bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot);
+
+/* True if none before it comes to its station. */
+bool wh_flow_is_first_call(const wh_flow_plan_t *plan, const wh_flow_call_t *call);
 
 static inline int32_t wh_flow_priority(const wh_flow_plan_t *plan, int32_t wafer) {
     return plan->lots[plan->wafers[wafer].lot].priority;
@@ -149,6 +169,9 @@ static inline const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, 
     return (size_t)step < route->step_count ? &route->steps[step]
                                             : &plan->backs[plan->wafers[wafer].back_station];
 }
+
+/* The recipe by which the wafer is processed in this step, 0: by none. */
+int32_t wh_flow_recipe_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step);
 
 /* The place where the wafer must end, if this step of its route is the last one and `back` is given; else
  * WH_FLOW_NONE. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "calls.h"
 #include "outside.h"
 
 /* The numbers of a robot and of a station that say what it does next. */
@@ -35,14 +36,18 @@ static bool is_any_in(const wh_flow_state_t *state, const wh_flow_station_state_
            is_ahead(state, station->idle_us) || is_ahead(state, station->down_us);
 }
 
-/* True if something ends or comes without a robot: a process, a clean, a failure, a lot, a start, the
- * time for which a robot is held. */
-static bool is_any_to_come(const wh_flow_state_t *state) {
+/* True if the plan has something to come by its time: a lot, a carrier, a failure, a start. */
+static bool is_planned(const wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
-    bool found =
-        wh_flow_is_real_busy(state) || is_ahead(state, state->next.start_us) ||
-        (state->next.lot < plan->lot_count && is_ahead(state, plan->lots[state->next.lot].arrives_us)) ||
-        state->next.down < plan->down_count;
+    const bool comes =
+        state->next.lot < plan->lot_count && is_ahead(state, plan->lots[state->next.lot].arrives_us);
+    return comes || is_ahead(state, state->next.start_us) || state->next.down < plan->down_count ||
+           is_ahead(state, wh_flow_calls_next(state));
+}
+
+/* True if something ends or comes without a robot: a process, a clean, what is planned. */
+static bool is_any_to_come(const wh_flow_state_t *state) {
+    bool found = wh_flow_is_real_busy(state) || is_planned(state);
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         found = found || is_any_in(state, &state->stations[i]);
     }

@@ -1,5 +1,6 @@
 #include "robots.h"
 
+#include "calls.h"
 #include "failed.h"
 #include "locks.h"
 #include "outside.h"
@@ -214,6 +215,9 @@ static bool begin_pump(wh_flow_state_t *state, int32_t robot, const wh_flow_orde
 bool wh_flow_robot_begin(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
     if (order->what == WH_FLOW_PUMP) {
         return begin_pump(state, robot, order);
+    }
+    if (state->robots[robot].station != order->at && wh_flow_is_port_shut(state, order->at)) {
+        return false;
     }
     if (state->robots[robot].station != order->at) {
         state->robots[robot].order = *order;

@@ -155,7 +155,7 @@ static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer
         }
         wh_flow_come(state, at->heading, WH_FLOW_NONE);
     }
-    if (state->failed > 0 && !wh_flow_recount(state, wafer)) {
+    if (state->failures.stations > 0 && !wh_flow_recount(state, wafer)) {
         return WH_FLOW_NONE;
     }
     const wh_flow_target_t target =

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "calls.h"
 #include "failed.h"
 
 /* More than one place of a station. */
@@ -135,8 +136,12 @@ static int32_t *count_of(const world_t *world, int32_t place) {
     return &safety->counts[place];
 }
 
+/* A carrier in which wafers end is changed when it is full. */
 static bool is_free(const world_t *world, const inside_t *at, int32_t place) {
     const int32_t count = *count_of(world, place);
+    if (wh_flow_is_for_ends(world->state, world->state->tool->place_stations[place])) {
+        return true;
+    }
     return count == (place == at->place ? 1 : 0) || count == 0;
 }
 
@@ -259,7 +264,7 @@ static bool walk_out(const world_t *world, const inside_t *at) {
     world->safety->reached_count = 1;
     bool is_out = false;
     for (int32_t k = at->step + 1; k <= last; ++k) {
-        if (state->failed > 0 && is_left_out(world, at, k, &is_out)) {
+        if (state->failures.stations > 0 && is_left_out(world, at, k, &is_out)) {
             continue;
         }
         is_out = false;

@@ -16,7 +16,7 @@ static void open_stations(wh_flow_state_t *state) {
     for (size_t i = 0; i < tool->place_count; ++i) {
         const int64_t idle_us = idle_of(&tool->stations[tool->place_stations[i]]);
         state->places[i] = (wh_flow_place_t){
-            WH_FLOW_NONE, WH_FLOW_NONE, -1, WH_FLOW_NEVER, WH_FLOW_NEVER, idle_us, 0, WH_FLOW_NONE, false};
+            WH_FLOW_NONE, WH_FLOW_NONE, -1, WH_FLOW_NEVER, WH_FLOW_NEVER, idle_us, 0, WH_FLOW_NONE, false, 0};
     }
     for (size_t i = 0; i < tool->station_count; ++i) {
         state->stations[i] = (wh_flow_station_state_t){
@@ -26,6 +26,7 @@ static void open_stations(wh_flow_state_t *state) {
             .down_us = WH_FLOW_NEVER,
             .pump_us = WH_FLOW_NEVER,
             .done_us = WH_FLOW_NEVER,
+            .changed_us = WH_FLOW_NEVER,
             .side = tool->stations[i].side,
             .acts = tool->stations[i].is_lock || wh_flow_is_cleaned(&tool->stations[i]),
             .real = {.shutter = WH_FLOW_NONE, .work_wafer = WH_FLOW_NONE, .closed_us = -1}};
@@ -56,6 +57,8 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
         .stations = wh_array_new(tool->station_count, sizeof *state->stations),
         .robots = wh_array_new(tool->robot_count, sizeof *state->robots),
         .wafers = wh_array_new(plan->wafer_count, sizeof *state->wafers),
+        .calls.of = wh_array_new(plan->call_count + 1, sizeof *state->calls.of),
+        .calls.has_come = wh_array_new(plan->lot_count + 1, sizeof *state->calls.has_come),
         .counts = wh_array_new(plan->step_count, sizeof *state->counts),
         .leaving = wh_array_new(plan->step_count, sizeof *state->leaving),
         .heads = wh_array_new(plan->step_count, sizeof *state->heads),
@@ -85,6 +88,8 @@ void wh_flow_state_close(wh_flow_state_t *state) {
     free(state->stations);
     free(state->robots);
     free(state->wafers);
+    free(state->calls.of);
+    free(state->calls.has_come);
     free(state->counts);
     free(state->leaving);
     free(state->heads);
@@ -157,7 +162,10 @@ void wh_flow_come(wh_flow_state_t *state, int32_t place, int32_t wafer) {
  * one. */
 static int32_t last_of_lot(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
-    const int32_t last = (int32_t)(lot->first_wafer + lot->wafer_count) - 1;
+    int32_t last = (int32_t)(lot->first_wafer + lot->wafer_count) - 1;
+    while (last > wafer && state->plan->wafers[last].is_skipped) {
+        --last;
+    }
     const bool are_there = state->wafers[wafer].step == 0 && state->wafers[last].step == 0 &&
                            state->wafers[last].place != WH_FLOW_NONE;
     return are_there && wh_flow_end_of(state->plan, last, 1) == WH_FLOW_NONE ? last : wafer;
@@ -203,7 +211,7 @@ static int32_t count_to_come(const wh_flow_state_t *state, int32_t route, int32_
 }
 
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
-    if (state->failed > 0) {
+    if (state->failures.stations > 0) {
         return count_to_come(state, route, step);
     }
     const size_t first = state->plan->routes[route].first_step;

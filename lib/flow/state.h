@@ -15,6 +15,7 @@ typedef struct {
     int32_t since_clean; /* wafers */
     int32_t owner;       /* the lot of a wafer that ends here: from its coming until the lot is over */
     bool is_clean_due;
+    int32_t recipe; /* of the wafer that lies there, or lay there last */
 } wh_flow_place_t;
 
 /* Real things in a station: its door shuts behind a robot, or before the first one; a wafer is worked on. */
@@ -23,7 +24,24 @@ typedef struct {
     int32_t shutter, work_wafer;  /* that robot; that wafer */
     int64_t shutting_us, work_us; /* since when */
     int64_t closed_us;            /* when something began there behind shut doors */
+    bool is_port_shut;            /* a load port that is not open */
+    bool has_carrier;             /* one stands there, comes or goes */
 } wh_flow_station_real_t;
+
+/* A carrier's call. */
+typedef enum {
+    WH_FLOW_CALL_AWAITED,
+    WH_FLOW_CALL_COMING,
+    WH_FLOW_CALL_THERE, /* open, and its wafers are known */
+    WH_FLOW_CALL_GOING,
+    WH_FLOW_CALL_GONE
+} wh_flow_call_phase_t;
+
+typedef struct {
+    wh_flow_call_phase_t phase;
+    int64_t since_us, until_us; /* of coming and going; until: WH_FLOW_NEVER of real ones */
+    bool is_told;               /* a real one has come, or gone */
+} wh_flow_call_state_t;
 
 typedef struct {
     int32_t user;     /* the robot whose blade is in it or next, or WH_FLOW_NONE */
@@ -46,6 +64,9 @@ typedef struct {
     bool is_aside;    /* as the last instant ended it was cleaned, pumped or had failed */
     int64_t
         next_us; /* as the last instant ended: when something of it ends next; of a failure for ever, never */
+    int32_t call;                  /* the number, from 1, of the carrier's call that goes on; 0: none does */
+    int64_t change_us, changed_us; /* a full carrier is changed for an empty one: since when, until when, or
+                                    * WH_FLOW_NEVER */
     wh_flow_station_real_t real;
 } wh_flow_station_state_t;
 
@@ -113,11 +134,13 @@ typedef enum {
     WH_FLOW_EVENT_CLEAN,
     WH_FLOW_EVENT_PUMP,
     WH_FLOW_EVENT_DOWN,
-    WH_FLOW_EVENT_STAY, /* of what is done in a place, up to the pick */
-    WH_FLOW_EVENT_SHUT, /* a real door */
-    WH_FLOW_EVENT_LEFT, /* a stay in a real station: until the wafer was lifted */
-    WH_FLOW_EVENT_HELD, /* a robot began nothing */
-    WH_FLOW_EVENT_ENDS, /* a route ends where its wafer lies, because of stations that have failed */
+    WH_FLOW_EVENT_STAY,  /* of what is done in a place, up to the pick */
+    WH_FLOW_EVENT_SHUT,  /* a real door */
+    WH_FLOW_EVENT_LEFT,  /* a stay in a real station: until the wafer was lifted */
+    WH_FLOW_EVENT_HELD,  /* a robot began nothing */
+    WH_FLOW_EVENT_ENDS,  /* a route ends where its wafer lies, because of stations that have failed */
+    WH_FLOW_EVENT_COMES, /* a carrier, until it is open and mapped */
+    WH_FLOW_EVENT_GOES,  /* from its closing until it is gone */
 } wh_flow_event_kind_t;
 
 /* One thing that took time, told when it has ended, so by the order of the ends. */
@@ -156,7 +179,7 @@ typedef struct {
 
 /* The next things of the plan. */
 typedef struct {
-    size_t lot, down; /* their indices in the plan */
+    size_t lot, down; /* their indices in the plan; all lots before this one are there */
     int64_t start_us; /* by takt */
 } wh_flow_next_t;
 
@@ -166,6 +189,18 @@ typedef struct {
     size_t count;
 } wh_flow_coming_t;
 
+/* All that has failed for ever: stations, and wafers that are lost by that. */
+typedef struct {
+    size_t stations, wafers;
+} wh_flow_failures_t;
+
+/* Carriers and their lots. */
+typedef struct {
+    wh_flow_call_state_t *of; /* by call */
+    bool *has_come;           /* by lot */
+    size_t skipped;           /* wafers that were left where they lie */
+} wh_flow_calls_t;
+
 typedef struct wh_flow_state {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
@@ -174,6 +209,7 @@ typedef struct wh_flow_state {
     wh_flow_station_state_t *stations;
     wh_flow_robot_state_t *robots;
     wh_flow_wafer_state_t *wafers;
+    wh_flow_calls_t calls;
     int32_t *counts;        /* by step: from the begin of the transfer in to the end of the pick out */
     int32_t *leaving;       /* by step: those of them whose pick out runs */
     int32_t *heads, *tails; /* by step: the wafers that lie there */
@@ -181,9 +217,8 @@ typedef struct wh_flow_state {
     struct wh_flow_safety *safety; /* see safe.h */
     uint64_t changes;              /* of where wafers are, and where they go */
     wh_flow_next_t next;
-    size_t over;        /* wafers at their end, lost ones with them */
-    size_t lost;        /* wafers in stations that failed */
-    size_t failed;      /* stations that never work again */
+    size_t over; /* wafers at their end, lost ones with them */
+    wh_flow_failures_t failures;
     int32_t first_open; /* all wafers before this one are over */
     int64_t last_us;    /* the end of the last placing */
     wh_flow_listener_t listener;
@@ -233,7 +268,7 @@ int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wa
 /* True if a clean by the number of wafers is due when one more has been in the place. */
 static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t place) {
     return wh_flow_is_clean_due(&state->tool->stations[state->tool->place_stations[place]],
-                                state->places[place].since_clean);
+                                state->places[place].recipe, state->places[place].since_clean);
 }
 
 /* True if such a clean begins as soon as the place's wafer is out of it. */

@@ -1,5 +1,6 @@
 #include "stations.h"
 
+#include "calls.h"
 #include "failed.h"
 #include "locks.h"
 #include "outside.h"
@@ -60,6 +61,7 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     wh_flow_station_state_t *station = &state->stations[number];
     ++station->wafers;
     state->places[at->place].idle_us = WH_FLOW_NEVER;
+    state->places[at->place].recipe = wh_flow_recipe_of(state->plan, wafer, at->step);
     if (is_last(state, wafer)) {
         end_wafer(state, wafer);
         return;
@@ -96,7 +98,8 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
     if (wh_flow_is_cleaned(of)) {
         place->is_clean_due = is_due && !of->cleans_full;
         place->since_clean = is_due && of->cleans_full ? 0 : place->since_clean;
-        place->idle_us = of->idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + of->idle_us;
+        const int64_t idle_us = wh_flow_treatment(of, place->recipe).idle_us;
+        place->idle_us = idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + idle_us;
         plan_cleans(state, station);
     }
 }
@@ -215,15 +218,12 @@ static void begin_cleans(wh_flow_state_t *state, int32_t number) {
     plan_cleans(state, number);
 }
 
-/* True if every wafer of the lot is at its end. */
-static bool is_lot_over(const wh_flow_state_t *state, int32_t number) {
-    const wh_flow_lot_t *lot = &state->plan->lots[number];
-    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
-        if (!state->wafers[i].is_over) {
-            return false;
-        }
-    }
-    return true;
+/* Nobody takes it: it is over where it lies. */
+static void skip(wh_flow_state_t *state, wh_flow_wafer_state_t *wafer) {
+    wafer->is_over = true;
+    wafer->done_us = WH_FLOW_NEVER;
+    ++state->calls.skipped;
+    wh_flow_note_over(state);
 }
 
 static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
@@ -232,7 +232,12 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         wafer->place = state->plan->wafers[i].home;
         wafer->entered_us = wafer->done_us = state->now_us;
         state->places[wafer->place].wafer = (int32_t)i;
+        state->places[wafer->place].recipe = state->plan->wafers[i].recipe;
         ++state->stations[state->tool->place_stations[wafer->place]].wafers;
+        if (state->plan->wafers[i].is_skipped) {
+            skip(state, wafer);
+            continue;
+        }
         ++state->counts[wh_flow_step_index(state, (int32_t)i, 0)];
         wh_flow_step_enter(state, (int32_t)i);
         if (state->plan->wafers[i].back != WH_FLOW_NONE) {
@@ -244,7 +249,7 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
 /* True if a wafer of a lot that is not over ends in this place. */
 static bool is_owned(const wh_flow_state_t *state, int32_t place) {
     const int32_t owner = place == WH_FLOW_NONE ? WH_FLOW_NONE : state->places[place].owner;
-    return owner != WH_FLOW_NONE && !is_lot_over(state, owner);
+    return owner != WH_FLOW_NONE && !wh_flow_is_lot_over(state, owner);
 }
 
 /* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there, come, or
@@ -254,7 +259,8 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
         if (place->coming != WH_FLOW_NONE || is_owned(state, state->plan->wafers[i].home) ||
             is_owned(state, state->plan->wafers[i].back) ||
-            (place->wafer != WH_FLOW_NONE && !is_lot_over(state, state->plan->wafers[place->wafer].lot))) {
+            (place->wafer != WH_FLOW_NONE &&
+             !wh_flow_is_lot_over(state, state->plan->wafers[place->wafer].lot))) {
             return false;
         }
     }
@@ -267,6 +273,34 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         }
     }
     return true;
+}
+
+/* True if the lot comes now. */
+static bool begin_lot(wh_flow_state_t *state, size_t number) {
+    const wh_flow_lot_t *lot = &state->plan->lots[number];
+    if (state->calls.has_come[number] || !wh_flow_has_called(state, number) || !make_room(state, lot)) {
+        return false;
+    }
+    state->calls.has_come[number] = true;
+    arrive(state, lot);
+    wh_flow_end_routes(state);
+    return true;
+}
+
+/* Lots come in their order, as far as their places are free; one whose carrier is not there yet keeps back
+ * those alone that come with it. True if any came. */
+static bool begin_lots(wh_flow_state_t *state) {
+    const wh_flow_plan_t *plan = state->plan;
+    bool is_held = false, came = false;
+    for (size_t i = state->next.lot; i < plan->lot_count && plan->lots[i].arrives_us <= state->now_us; ++i) {
+        const wh_flow_lot_t *lot = &plan->lots[i];
+        came = ((lot->call > 0 || !is_held) && begin_lot(state, i)) || came;
+        is_held = is_held || (lot->call == 0 && !state->calls.has_come[i]);
+    }
+    while (state->next.lot < plan->lot_count && state->calls.has_come[state->next.lot]) {
+        ++state->next.lot;
+    }
+    return came;
 }
 
 /* A process that would begin from now on begins when the failure is over. */
@@ -329,7 +363,7 @@ static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
     if (down->for_us == WH_FLOW_FOR_EVER) {
-        ++state->failed;
+        ++state->failures.stations;
         ++state->changes;
         hold_back(state, down->station);
     }
@@ -349,14 +383,14 @@ static bool is_any_clean_due(const wh_flow_state_t *state, int32_t number) {
 
 void wh_flow_stations_begin(wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
+    bool goes_on = true;
     while (state->next.down < plan->down_count && plan->downs[state->next.down].at_us <= state->now_us) {
         begin_down(state, &plan->downs[state->next.down++]);
     }
     wh_flow_end_routes(state); /* a lot may be over by that, and make room for another one */
-    while (state->next.lot < plan->lot_count && plan->lots[state->next.lot].arrives_us <= state->now_us &&
-           make_room(state, &plan->lots[state->next.lot])) {
-        arrive(state, &plan->lots[state->next.lot++]);
-        wh_flow_end_routes(state);
+    while (goes_on) {
+        goes_on = wh_flow_calls_go(state);
+        goes_on = begin_lots(state) || goes_on;
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         if (!state->stations[i].acts) {
@@ -416,6 +450,7 @@ int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
     if (state->next.lot < plan->lot_count) {
         next_us = sooner(now_us, next_us, plan->lots[state->next.lot].arrives_us);
     }
+    next_us = sooner(now_us, next_us, wh_flow_calls_next(state));
     if (state->next.down < plan->down_count) {
         next_us = sooner(now_us, next_us, plan->downs[state->next.down].at_us);
     }

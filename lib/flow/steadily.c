@@ -81,7 +81,7 @@ static void add_since(snapshot_t *into, const wh_flow_state_t *state, int64_t us
     add(into, us == WH_FLOW_NEVER || us < 0 ? us : us - state->now_us);
 }
 
-/* Wafers of one lot are alike, but for their steps. */
+/* Wafers of one lot are alike, but for their steps and recipes. */
 static void add_wafer(snapshot_t *into, const wh_flow_state_t *state, int32_t w) {
     if (w == WH_FLOW_NONE) {
         add(into, WH_FLOW_NONE);
@@ -89,6 +89,7 @@ static void add_wafer(snapshot_t *into, const wh_flow_state_t *state, int32_t w)
     }
     const wh_flow_wafer_state_t *wafer = &state->wafers[w];
     add(into, (int64_t)state->plan->wafers[w].lot * 1000 + wafer->step);
+    add(into, state->plan->wafers[w].recipe);
     add(into,
         (wafer->toward != WH_FLOW_NONE ? 1 : 0) + (wafer->is_moving ? 2 : 0) + (wafer->is_over ? 4 : 0));
     add(into, wafer->taker);
@@ -155,6 +156,7 @@ static void add_place_state(snapshot_t *into, const wh_flow_state_t *state, cons
     add_wafer(into, state, place->coming);
     add(into, place->is_clean_due);
     add(into, place->since_clean);
+    add(into, place->recipe);
     add_ahead(into, state, place->leaving_us);
     add_ahead(into, state, place->clean_us);
     add_ahead(into, state, place->idle_us);

@@ -63,16 +63,32 @@ static int64_t handled_us(const wh_flow_tool_t *tool, int32_t station) {
     return pick_us + place_us < swap_us ? pick_us + place_us : swap_us;
 }
 
-/* How long a wafer of the route keeps places of this station alone. */
-static int64_t kept_us(const wh_flow_tool_t *tool, const wh_flow_route_t *route, int32_t station) {
+/* How long a wafer of this recipe and route keeps places of this station alone. */
+static int64_t kept_us(const wh_flow_tool_t *tool, const wh_flow_route_t *route, int32_t station,
+                       int32_t recipe) {
     int64_t sum_us = 0;
     for (size_t i = 1; i + 1 < route->step_count; ++i) {
         const wh_flow_step_t *step = &route->steps[i];
         if (step->station_count == 1 && step->stations[0] == station) {
-            sum_us += wh_flow_step_us(step, &tool->stations[station]) + handled_us(tool, station);
+            sum_us += wh_flow_step_us(step, &tool->stations[station], recipe) + handled_us(tool, station);
         }
     }
     return sum_us;
+}
+
+/* The least of the lot's wafers. */
+static double lot_us(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, size_t lot, int32_t station) {
+    const wh_flow_lot_t *of = &plan->lots[lot];
+    double least_us = HUGE_VAL;
+    int32_t before = -1;
+    for (size_t w = of->first_wafer; w < of->first_wafer + of->wafer_count; ++w) {
+        const int32_t recipe = plan->wafers[w].recipe;
+        if (recipe != before) {
+            least_us = fmin(least_us, (double)kept_us(tool, &plan->routes[of->route], station, recipe));
+        }
+        before = recipe;
+    }
+    return least_us;
 }
 
 /* The station that each wafer keeps for longer than one leaves in this cycle, and for how long: routes that
@@ -82,8 +98,7 @@ static int32_t find_outrun(const wh_flow_tool_t *tool, const wh_flow_plan_t *pla
     for (int32_t s = 0; s < (int32_t)tool->station_count; ++s) {
         *least_us = HUGE_VAL;
         for (size_t l = 0; l < plan->lot_count; ++l) {
-            const wh_flow_route_t *route = &plan->routes[plan->lots[l].route];
-            *least_us = fmin(*least_us, (double)kept_us(tool, route, s) / tool->stations[s].slots);
+            *least_us = fmin(*least_us, lot_us(tool, plan, l, s) / tool->stations[s].slots);
         }
         if (*least_us > wafer_us + 1) {
             return s;

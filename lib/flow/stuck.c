@@ -182,10 +182,27 @@ static int say_all(const wh_flow_state_t *state, bool (*is_meant)(const wh_flow_
     return said;
 }
 
+/* Lots whose carriers have not come, though their time is there. */
+static void say_lots(const wh_flow_state_t *state, text_t *text) {
+    for (size_t i = state->next.lot; i < state->plan->lot_count; ++i) {
+        const wh_flow_lot_t *lot = &state->plan->lots[i];
+        if (!state->calls.has_come[i] && lot->call > 0 && lot->arrives_us <= state->now_us) {
+            const wh_flow_wafer_t *first = &state->plan->wafers[lot->first_wafer];
+            say(text, "%sthe lot of %s waits for its carrier at %s", text->length > 0 ? "; " : "",
+                first->name, station_name(state, state->tool->place_stations[first->home]));
+        }
+    }
+}
+
 /* The wafers inside; if there are none, those that cannot leave their first places. */
 char *wh_flow_stuck_text(const wh_flow_state_t *state) {
     text_t text = {0};
-    if (say_all(state, is_inside, &text) == 0 && say_all(state, is_kept_out, &text) == 0) {
+    const int said = say_all(state, is_inside, &text);
+    if (said == 0) {
+        (void)say_all(state, is_kept_out, &text);
+    }
+    say_lots(state, &text);
+    if (text.length == 0) {
         say(&text, "no robot takes the next wafer out of its first place");
     }
     return text.text;

@@ -7,6 +7,7 @@
 typedef struct {
     const wh_flow_tool_t *tool;
     int32_t n;
+    int32_t recipe;             /* of all wafers */
     int32_t stations[MOST + 2]; /* the first one of each step */
     int32_t places[MOST + 2], kept[MOST + 2];
     double process[MOST + 2], clean[MOST + 2]; /* us */
@@ -38,6 +39,11 @@ static const char *look_at_lots(const wh_flow_plan_t *plan) {
             return plan->lots[i].is_dummy ? "there are dummies" : "a lot arrives later";
         }
     }
+    for (size_t w = 1; w < plan->wafer_count; ++w) {
+        if (plan->wafers[w].recipe != plan->wafers[0].recipe) {
+            return "wafers have several recipes";
+        }
+    }
     return NULL;
 }
 
@@ -57,14 +63,32 @@ static const char *look_at_plan(const wh_flow_tool_t *tool, const wh_flow_plan_t
     return look_at_lots(plan);
 }
 
-static const char *look_at_station(const wh_flow_tool_t *tool, int32_t station) {
+/* True if a place is cleaned after each wafer of the recipe, or never. */
+static bool is_cleaned_each(const wh_flow_station_t *of, int32_t recipe) {
+    const wh_flow_treatment_t treatment = wh_flow_treatment(of, recipe);
+    return treatment.clean_after <= 1 && treatment.idle_us == WH_FLOW_NEVER && of->idle_us == WH_FLOW_NEVER &&
+           !of->cleans_full;
+}
+
+/* `recipe`: of the wafers that come there. */
+static const char *look_at_station(const wh_flow_tool_t *tool, int32_t station, int32_t recipe) {
     const wh_flow_station_t *of = &tool->stations[station];
     const wh_flow_door_t *door = &tool->doors[station];
+    if (of->has_carriers && of->is_absent) {
+        return "carriers come while it goes on";
+    }
     if (of->is_lock || door->open_us > 0 || door->close_us > 0) {
         return of->is_lock ? "there are load locks" : "there are doors";
     }
-    const bool is_each = of->clean_after <= 1 && of->idle_us == WH_FLOW_NEVER && !of->cleans_full;
-    return is_each ? NULL : "cleans come otherwise than after each wafer";
+    return is_cleaned_each(of, recipe) ? NULL : "cleans come otherwise than after each wafer";
+}
+
+static int32_t recipe_in(const line_t *line, const wh_flow_step_t *step) {
+    return step->recipe > 0 ? step->recipe : line->recipe;
+}
+
+static int32_t clean_after(const line_t *line, const wh_flow_step_t *step, const wh_flow_station_t *of) {
+    return wh_flow_treatment(of, recipe_in(line, step)).clean_after;
 }
 
 /* Parallel stations take equally long. */
@@ -72,12 +96,13 @@ static const char *look_at_step(const line_t *line, const wh_flow_step_t *step) 
     const wh_flow_station_t *stations = line->tool->stations, *first = &stations[step->stations[0]];
     for (size_t k = 0; k < step->station_count; ++k) {
         const wh_flow_station_t *of = &stations[step->stations[k]];
-        const char *why = look_at_station(line->tool, step->stations[k]);
+        const char *why = look_at_station(line->tool, step->stations[k], recipe_in(line, step));
         if (why) {
             return why;
         }
-        const bool is_as_first = wh_flow_step_us(step, of) == wh_flow_step_us(step, first) &&
-                                 of->clean_after == first->clean_after && of->clean_us == first->clean_us;
+        const bool is_as_first =
+            wh_flow_step_us(step, of, line->recipe) == wh_flow_step_us(step, first, line->recipe) &&
+            clean_after(line, step, of) == clean_after(line, step, first) && of->clean_us == first->clean_us;
         if (!is_as_first) {
             return "parallel stations take differently long";
         }
@@ -105,20 +130,21 @@ static void take_step(line_t *line, int32_t index, const wh_flow_step_t *step) {
         line->places[index] += line->tool->stations[step->stations[k]].slots;
     }
     line->kept[index] = step->kept_empty;
-    line->process[index] = (double)wh_flow_step_us(step, first);
-    line->clean[index] = first->clean_after > 0 ? (double)first->clean_us : 0;
+    line->process[index] = (double)wh_flow_step_us(step, first, line->recipe);
+    line->clean[index] = clean_after(line, step, first) > 0 ? (double)first->clean_us : 0;
 }
 
 /* The one station from which all lots come, or to which they go. */
 static const char *take_end(line_t *line, int32_t index, int32_t station) {
-    const char *why = look_at_station(line->tool, station);
+    const char *why = look_at_station(line->tool, station, line->recipe);
     if (line->stations[index] != WH_FLOW_NONE && line->stations[index] != station) {
         return "lots come from several stations, or end in several ones";
     }
     line->stations[index] = station;
-    return why                                             ? why
-           : line->tool->stations[station].clean_after > 0 ? "a first or last place is cleaned"
-                                                           : NULL;
+    return why ? why
+           : wh_flow_treatment(&line->tool->stations[station], line->recipe).clean_after > 0
+               ? "a first or last place is cleaned"
+               : NULL;
 }
 
 static const char *take_ends(line_t *line, const wh_flow_plan_t *plan, bool goes_back) {
@@ -336,7 +362,7 @@ static const char *find_form(const line_t *line, const wh_flow_plan_t *plan, wh_
 }
 
 wh_flow_textbook_t wh_flow_textbook(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
-    line_t line = {.tool = tool};
+    line_t line = {.tool = tool, .recipe = plan->wafer_count > 0 ? plan->wafers[0].recipe : 0};
     wh_flow_textbook_t found = {.cycle_us = -1};
     found.why = look_at_plan(tool, plan);
     found.why = found.why ? found.why : take_route(&line, plan);

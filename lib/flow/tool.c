@@ -125,6 +125,38 @@ void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool) {
     }
 }
 
+bool wh_flow_is_cleaned(const wh_flow_station_t *station) {
+    bool is_cleaned = station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
+    for (size_t i = 0; station->has_recipes && i < WH_FLOW_RECIPES; ++i) {
+        is_cleaned = is_cleaned || station->by_recipe[i].clean_after > 0 ||
+                     station->by_recipe[i].idle_us != WH_FLOW_NEVER;
+    }
+    return is_cleaned;
+}
+
+bool wh_flow_is_processing(const wh_flow_station_t *station) {
+    bool is_processing = station->process_us > 0;
+    for (size_t i = 0; station->has_recipes && i < WH_FLOW_RECIPES; ++i) {
+        is_processing = is_processing || station->by_recipe[i].process_us > 0;
+    }
+    return is_processing;
+}
+
+int32_t wh_flow_recipe_named(const wh_flow_recipes_t *recipes, const char *name) {
+    for (int32_t i = 0; i < recipes->count; ++i) {
+        if (strcmp(recipes->names[i], name) == 0) {
+            return i + 1;
+        }
+    }
+    return 0;
+}
+
+void wh_flow_hasten_recipes(wh_flow_station_t *station, int32_t ppm) {
+    for (size_t i = 0; i < WH_FLOW_RECIPES; ++i) {
+        station->by_recipe[i].process_us = wh_flow_less_us(station->by_recipe[i].process_us, ppm);
+    }
+}
+
 int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name) {
     for (size_t i = 0; i < tool->station_count; ++i) {
         if (strcmp(tool->stations[i].name, name) == 0) {
@@ -168,6 +200,14 @@ static uint64_t hash_times(uint64_t hash, const int64_t times_us[], size_t count
     return hash;
 }
 
+uint64_t wh_flow_hash_recipes(const wh_flow_station_t *station, uint64_t hash) {
+    for (size_t i = 0; station->has_recipes && i < WH_FLOW_RECIPES; ++i) {
+        const wh_flow_treatment_t *by = &station->by_recipe[i];
+        hash = hash_times(hash, (const int64_t[]){by->process_us, by->idle_us, by->clean_after}, 3);
+    }
+    return hash;
+}
+
 static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
     const int64_t times_us[] = {station->process_us,       station->window_us,       station->clean_us,
                                 station->idle_us,          station->pump_us[0],      station->pump_us[1],
@@ -175,7 +215,11 @@ static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
     hash = hash_times(wh_hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
     hash = wh_hash_int(wh_hash_int(hash, station->slots), station->clean_after);
     hash = wh_hash_int(wh_hash_int(hash, station->is_lock), station->is_load_port);
-    hash = wh_hash_int(hash, station->cleans_full);
+    hash = wh_flow_hash_recipes(station, wh_hash_int(hash, station->cleans_full));
+    if (station->has_carriers) {
+        hash =
+            hash_times(hash, (const int64_t[]){station->is_absent, station->comes_us, station->goes_us}, 3);
+    }
     return wh_hash_int(hash, (int32_t)station->side);
 }
 
@@ -185,6 +229,7 @@ static uint64_t hash_route(uint64_t hash, const wh_flow_route_t *route) {
         const wh_flow_step_t *step = &route->steps[k];
         hash = hash_times(hash, &step->process_us, 1);
         hash = wh_hash_int(wh_hash_int(hash, step->kept_empty), step->second_arm);
+        hash = step->recipe > 0 ? wh_hash_int(hash, step->recipe) : hash;
         for (size_t i = 0; i < step->station_count; ++i) {
             hash = wh_hash_int(hash, step->stations[i]);
         }
@@ -211,6 +256,9 @@ uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
     }
     for (size_t i = 0; i < tool->place_count; ++i) {
         hash = wh_hash_int(hash, (int32_t)tool->slot_sides[i]);
+    }
+    for (int32_t i = 0; i < tool->recipes.count; ++i) {
+        hash = wh_hash_text(hash, tool->recipes.names[i]);
     }
     for (size_t i = 0; i < tool->route_count; ++i) {
         hash = hash_route(hash, &tool->routes[i]);

@@ -22,6 +22,23 @@
 /* A failure's end that does not come, and whatever would come behind it. */
 #define WH_FLOW_FOR_EVER (INT64_MAX / 2)
 
+/* The most recipes of a tool, and the longest name of one, with its terminator. */
+#define WH_FLOW_RECIPES 32
+#define WH_FLOW_RECIPE_BYTES 64
+
+/* The names of a tool's recipes. They have numbers from 1 on; 0 is none. */
+typedef struct {
+    char names[WH_FLOW_RECIPES][WH_FLOW_RECIPE_BYTES];
+    int32_t count;
+} wh_flow_recipes_t;
+
+/* A station's times that go by recipe. */
+typedef struct {
+    int64_t process_us;  /* after each placing; 0: none */
+    int64_t idle_us;     /* without a wafer, then a clean; WH_FLOW_NEVER: none */
+    int32_t clean_after; /* wafers; 0: not by their number */
+} wh_flow_treatment_t;
+
 /* Two pressures, and what a robot or a slot without a side has. */
 typedef enum { WH_FLOW_ATMOSPHERE, WH_FLOW_VACUUM, WH_FLOW_BOTH } wh_flow_side_t;
 
@@ -45,11 +62,17 @@ typedef struct {
     bool
         cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
     int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
+    bool has_recipes; /* `by_recipe` counts, with number 1 first */
+    wh_flow_treatment_t by_recipe[WH_FLOW_RECIPES];
     bool is_lock, is_load_port;
-    bool is_real;         /* its processes, cleans and pumps are told from outside */
-    wh_flow_work_t works; /* its own chuck or clamp can do this; else WH_FLOW_WORK_NONE */
-    int32_t less_ppm;     /* processes of steps, too, take so much less: see wh_flow_shorten */
-    wh_flow_side_t side;  /* of a lock, at the beginning */
+    bool has_carriers;         /* a load port to which carriers come in steps that take time */
+    bool is_absent;            /* none of them is there at the beginning */
+    bool is_real_port;         /* somebody else tells when they have come and gone */
+    int64_t comes_us, goes_us; /* of timed ones: until it is open and mapped; until it is gone */
+    bool is_real;              /* its processes, cleans and pumps are told from outside */
+    wh_flow_work_t works;      /* its own chuck or clamp can do this; else WH_FLOW_WORK_NONE */
+    int32_t less_ppm;          /* processes of steps, too, take so much less: see wh_flow_shorten */
+    wh_flow_side_t side;       /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
 
@@ -73,6 +96,7 @@ typedef struct {
     int32_t *stations; /* parallel ones, as listed */
     size_t station_count;
     int64_t process_us; /* WH_FLOW_NONE: that of the station */
+    int32_t recipe;     /* by which it processes all wafers; 0: by theirs */
     int32_t kept_empty; /* places of the step that stay empty */
     bool second_arm;    /* the second arm alone takes out of it */
     wh_flow_work_t work;
@@ -100,7 +124,8 @@ typedef struct {
     int64_t *move_us;           /* by robot, station from, station to */
     int32_t *place_stations;    /* by place */
     wh_flow_side_t *slot_sides; /* by place: the side whose robots may bring a wafer there */
-    wh_flow_route_t *routes;    /* by which wafers go; flows have their own */
+    wh_flow_recipes_t recipes;
+    wh_flow_route_t *routes; /* by which wafers go; flows have their own */
     size_t route_count;
 } wh_flow_tool_t;
 
@@ -153,21 +178,42 @@ static inline bool wh_flow_sides_agree(wh_flow_side_t a, wh_flow_side_t b) {
     return a == WH_FLOW_BOTH || b == WH_FLOW_BOTH || a == b;
 }
 
-/* True if a clean by the number of wafers is due when one more has been in a place, in which `since_clean`
- * have been since its last clean. */
-static inline bool wh_flow_is_clean_due(const wh_flow_station_t *station, int32_t since_clean) {
-    return station->clean_after > 0 && since_clean + 1 >= station->clean_after;
+/* How a station treats wafers of a recipe, 0: of none. */
+static inline wh_flow_treatment_t wh_flow_treatment(const wh_flow_station_t *station, int32_t recipe) {
+    const wh_flow_treatment_t usual = {station->process_us, station->idle_us, station->clean_after};
+    return recipe > 0 && station->has_recipes ? station->by_recipe[recipe - 1] : usual;
+}
+
+/* True if a clean by the number of wafers is due when one more, of this recipe, has been in a place, in which
+ * `since_clean` have been since its last clean. */
+static inline bool wh_flow_is_clean_due(const wh_flow_station_t *station, int32_t recipe,
+                                        int32_t since_clean) {
+    const int32_t after = wh_flow_treatment(station, recipe).clean_after;
+    return after > 0 && since_clean + 1 >= after;
 }
 
 /* True if the station is ever cleaned. */
-static inline bool wh_flow_is_cleaned(const wh_flow_station_t *station) {
-    return station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
+bool wh_flow_is_cleaned(const wh_flow_station_t *station);
+
+/* True if the station processes wafers of any recipe. */
+bool wh_flow_is_processing(const wh_flow_station_t *station);
+
+/* How long a wafer of this recipe is processed in this station in this step of its route. */
+static inline int64_t wh_flow_step_us(const wh_flow_step_t *step, const wh_flow_station_t *station,
+                                      int32_t recipe) {
+    return step->process_us != WH_FLOW_NONE
+               ? step->process_us
+               : wh_flow_treatment(station, step->recipe > 0 ? step->recipe : recipe).process_us;
 }
 
-/* How long a wafer is processed in this station in this step of its route. */
-static inline int64_t wh_flow_step_us(const wh_flow_step_t *step, const wh_flow_station_t *station) {
-    return step->process_us == WH_FLOW_NONE ? station->process_us : step->process_us;
-}
+/* The number of the recipe of this name; 0: there is none. */
+int32_t wh_flow_recipe_named(const wh_flow_recipes_t *recipes, const char *name);
+
+/* Each process by recipe takes so many millionths less. */
+void wh_flow_hasten_recipes(wh_flow_station_t *station, int32_t ppm);
+
+/* Continues a hash with what goes by recipe; it is the same if nothing does. */
+uint64_t wh_flow_hash_recipes(const wh_flow_station_t *station, uint64_t hash);
 
 /* How long a lock takes to this side. */
 static inline int64_t wh_flow_pump_us(const wh_flow_station_t *station, wh_flow_side_t to, bool is_empty) {

@@ -1,5 +1,6 @@
 #include "transfer.h"
 
+#include "calls.h"
 #include "failed.h"
 #include "safe.h"
 
@@ -22,13 +23,16 @@ int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t 
     if (state->wafers[wafer].step == 0) {
         return 0;
     }
-    return of_step == WH_FLOW_NONE ? of->process_us : wh_flow_less_us(of_step, of->less_ppm);
+    return of_step == WH_FLOW_NONE
+               ? wh_flow_treatment(of, wh_flow_recipe_of(state->plan, wafer, state->wafers[wafer].step))
+                     .process_us
+               : wh_flow_less_us(of_step, of->less_ppm);
 }
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const wh_flow_station_state_t *now = &state->stations[station];
     if (now->user != WH_FLOW_NONE || now->real.is_shutting || now->shut_us > state->now_us ||
-        now->down_us != WH_FLOW_NEVER) {
+        now->down_us != WH_FLOW_NEVER || wh_flow_is_port_shut(state, station)) {
         return false;
     }
     return !state->tool->stations[station].is_lock ||
@@ -79,6 +83,9 @@ static int64_t open_from(const wh_flow_state_t *state, int32_t robot, int32_t st
     const wh_flow_side_t side = state->tool->sides[of];
     int64_t us = now->busy_us;
     us = now->down_us != WH_FLOW_NEVER ? later(us, now->down_us) : us;
+    if (wh_flow_is_port_shut(state, station)) {
+        return WH_FLOW_NEVER;
+    }
     if (!state->tool->stations[station].is_lock) {
         return us;
     }
@@ -123,7 +130,7 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
     const size_t of = wh_flow_of(state->tool, robot, station);
     int64_t empty_us = 0;
     if (!wh_flow_sides_agree(state->tool->slot_sides[place], state->tool->sides[of]) ||
-        state->stations[station].down_us != WH_FLOW_NEVER) {
+        state->stations[station].down_us != WH_FLOW_NEVER || wh_flow_is_port_shut(state, station)) {
         return;
     }
     const int64_t clean_us = clean_from(state, place, &empty_us);

@@ -150,6 +150,7 @@ static void hasten_station(const wh_layout_t *layout, int32_t station, double sh
     memcpy(&times, &layout->stations[station].times, sizeof(void *));
     times->of.less_ppm = ppm;
     times->of.process_us = wh_flow_less_us(times->of.process_us, ppm);
+    wh_flow_hasten_recipes(&times->of, ppm);
     times->of.clean_us = wh_flow_less_us(times->of.clean_us, ppm);
     for (size_t side = 0; side < 2; ++side) {
         times->of.pump_us[side] = wh_flow_less_us(times->of.pump_us[side], ppm);

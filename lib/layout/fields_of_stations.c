@@ -71,8 +71,10 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_clean_fields[] = {
-    {"after", "integer", "wafers", false, APART(1, 1000000, ASKED)},
-    {"idle", NUMBER, "s without a wafer", false, SECONDS_ABOVE_0(ASKED)},
+    {"after", "integer|table<string, integer>", "wafers, also by recipe of the one that was there last",
+     false, APART(1, 1000000, ASKED)},
+    {"idle", BY_RECIPE, "s without a wafer, also by recipe of the one that was there last", false,
+     SECONDS_ABOVE_0(ASKED)},
     {"seconds", NUMBER, "s: how long it takes", true, SECONDS_ABOVE_0(ASKED)},
     {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside", false,
      APART_SWITCH(true)},
@@ -130,6 +132,7 @@ const wh_reader_field_t wh_layout_e84_fields[] = {
 const wh_reader_field_t wh_layout_carrier_fields[] = {
     {"wafers", "integer|integer[]", "how many, from slot 1 on, or their slots; each is called CARRIER.SLOT",
      false, .otherwise = "0"},
+    {"recipe", "string", "by which stations process its wafers", false, .otherwise = "none"},
     {"at", "string", "the load port where it is when a run begins, by name", false,
      .otherwise = "it is still to come"},
     END};
@@ -191,6 +194,7 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
      APART_WORD(FOLLOWS, wh_layout_face_words), .otherwise = "the station's, else up"},
     {"thickness", NUMBER, "mm: what MAP measures; all else goes by that of `wafer`", false,
      APART(0.01, 100, FOLLOWS), .otherwise = "that of `wafer`"},
+    {"recipe", "string", "by which stations process it", false, .otherwise = "none"},
     {"rim", "waferhand.rim", "its true rim, which edge sensors and beams see, and edge grips meet", false},
     END};
 

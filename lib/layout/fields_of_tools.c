@@ -34,6 +34,8 @@ const wh_reader_field_t wh_layout_timed_station_fields[] = {
     {"by", "string|string[]|table<string, waferhand.timed_by>", "the robots that serve it", false,
      .otherwise = "all"},
     STATION_TIMES(" and the door is shut", "waferhand.pump"),
+    {"port", "waferhand.port", "of a load port: how long a carrier takes to come and to go", false,
+     .otherwise = "no time"},
     {"into", "integer[]", "slots of a load lock that only atmosphere's robots fill", false},
     {"out", "integer[]", "slots of a load lock that only vacuum's robots fill", false},
     {"door", "number|waferhand.timed_door", "s to open and to shut", false},

@@ -200,6 +200,7 @@ typedef struct {
     int32_t station, slot; /* slot from 1 */
     double thickness;      /* as MAP measures it, mm; all else goes by that of the layout's wafers */
     int32_t carrier;       /* its number from 1, with which it comes; 0: it is there when a run begins */
+    int32_t recipe;        /* its number, by which stations process it; 0: none */
 } wh_layout_wafer_t;
 
 /* How MAP judges what its beams see: mcs/slot_codes.h. */
@@ -274,7 +275,8 @@ typedef struct {
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
     size_t carrier_count;
-    wh_layout_carrier_t *carriers; /* sorted by name */
+    wh_layout_carrier_t *carriers;    /* sorted by name */
+    const wh_flow_recipes_t *recipes; /* of stations' processes and cleans */
     /* ----------------------------------------------------------------------------------- faces and grips */
     /* Wafers may come to lie face down: cell.thickness is theirs, and simulators have grips (grips.h). */
     bool has_faces;

@@ -9,6 +9,7 @@
 
 #define NUMBER "number"
 #define TRIPLE "number[]"
+#define BY_RECIPE "number|table<string, number>"
 #define SWITCH "boolean"
 #define WORD "" /* its type is its words: wh_field_type */
 #define END                                                                                                  \
@@ -32,7 +33,7 @@
 #define SECONDS_ABOVE_0(usual) APART(1e-6, WH_LAYOUT_LONGEST_S, usual)
 /* The fields of a station that takes time, in a cell with axes and in one of times alone. */
 #define STATION_TIMES(since, lock)                                                                           \
-    {"process", NUMBER, "s, from when the wafer lies there" since, false, SECONDS(0)},                       \
+    {"process", BY_RECIPE, "s, also by recipe, from when the wafer lies there" since, false, SECONDS(0)},    \
         {"window", NUMBER,           "s: the longest stay after the process",                                \
          false,    SECONDS(FOLLOWS), .otherwise = "any"},                                                    \
         {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},        \

@@ -19,6 +19,7 @@ struct wh_layout_carrier {
     char name[WH_NAME_SIZE];
     int32_t at; /* the station where it is when a run begins, or WH_NONE: it is not there */
     int32_t first, count;
+    int32_t recipe;  /* of its wafers, by its number; 0: none */
     const bool *has; /* by slot from 0, WH_LAYOUT_SLOTS of them; null: it has no wafers of its own */
 };
 

@@ -29,6 +29,19 @@ static uint64_t hash_times(uint64_t hash, const wh_layout_times_t *times) {
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
         hash = wh_hash_word(hash, (uint64_t)numbers[i]);
     }
+    return wh_flow_hash_recipes(of, hash);
+}
+
+/* Nothing if there are none. */
+static uint64_t hash_recipes(const wh_layout_t *layout, uint64_t hash) {
+    for (int32_t i = 0; layout->recipes && i < layout->recipes->count; ++i) {
+        hash = wh_hash_text(hash, layout->recipes->names[i]);
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        if (layout->wafers[w].recipe > 0) {
+            hash = wh_hash_word(wh_hash_word(hash, w), (uint64_t)layout->wafers[w].recipe);
+        }
+    }
     return hash;
 }
 
@@ -42,5 +55,5 @@ uint64_t wh_layout_hash_times(const wh_layout_t *layout, uint64_t hash) {
             hash = wh_hash_int(hash, (int32_t)station->by[r].side);
         }
     }
-    return hash;
+    return hash_recipes(layout, hash);
 }

@@ -16,14 +16,25 @@ static void *lua_memory(lua_State *L, size_t bytes) {
     return memory;
 }
 
-/* A trial draws how long the station's process takes. */
+/* A process of some time takes longer by the station's error, and some time yet. */
+static int64_t err_us(const wh_clocked_t *of, int64_t us) {
+    const int64_t longer_us = us + of->error_us;
+    return us > 0 && longer_us < 1 ? 1 : us > 0 ? longer_us : us;
+}
+
+/* A trial draws how long the station's processes take: all are longer by the same. */
 static void draw_process(const struct wh_clocks *clocks, wh_clocked_t *of) {
     const wh_mcs_t *mcs = clocks->mcs;
-    if (mcs->wanted.trial && mcs->layout->errors && of->of.process_us > 0) {
-        const wh_real_t s =
-            wh_errors_draw_process(mcs->layout->errors, mcs->wanted.trial, (size_t)of->station);
-        of->of.process_us += llround((double)s * 1e6);
-        of->of.process_us = of->of.process_us > 1 ? of->of.process_us : 1;
+    if (mcs->wanted.trial && mcs->layout->errors && wh_flow_is_processing(&of->of)) {
+        const int64_t usual_us = of->of.process_us;
+        of->error_us = llround(
+            (double)wh_errors_draw_process(mcs->layout->errors, mcs->wanted.trial, (size_t)of->station) *
+            1e6);
+        of->of.process_us = err_us(of, usual_us);
+        of->error_us = usual_us > 0 ? of->of.process_us - usual_us : of->error_us;
+        for (size_t i = 0; i < WH_FLOW_RECIPES; ++i) {
+            of->of.by_recipe[i].process_us = err_us(of, of->of.by_recipe[i].process_us);
+        }
     }
 }
 
@@ -34,7 +45,7 @@ static void number_stations(struct wh_clocks *clocks, const wh_layout_t *real) {
         if (times) {
             clocks->by_station[s] = (int32_t)clocks->count;
             clocks->of[clocks->count] =
-                (wh_clocked_t){(int32_t)s, times, times->of, clocks->place_count, false};
+                (wh_clocked_t){(int32_t)s, times, times->of, clocks->place_count, 0, false};
             draw_process(clocks, &clocks->of[clocks->count++]);
             clocks->place_count += (size_t)times->of.slots;
         }

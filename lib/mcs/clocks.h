@@ -17,6 +17,7 @@ typedef struct {
     const wh_layout_times_t *times;
     wh_flow_station_t of; /* as it truly is: a study draws times */
     size_t first;         /* of its places */
+    int64_t error_us;     /* by which its processes are drawn longer */
     bool is_down;         /* a flow has it fail: nothing begins in it */
 } wh_clocked_t;
 

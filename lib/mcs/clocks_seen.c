@@ -81,6 +81,7 @@ void wh_clocks_place_all(struct wh_clocks *clocks, const wh_state_t *state) {
         wh_clock_seen_t *seen = found.place == WH_NONE ? NULL : &clocks->seen[found.place];
         if (seen && (seen->wafer == WH_NONE || seen->wafer == (int32_t)w)) {
             seen->wafer = (int32_t)w;
+            seen->recipe = clocks->mcs->layout->wafers[w].recipe;
             seen->is_bad = found.is_bad;
         }
     }

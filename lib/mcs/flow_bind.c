@@ -5,8 +5,7 @@
 #include "../text/array.h"
 #include "flow_played.h"
 
-/* By place of the tool the layout's wafer that lies there, or WH_FLOW_NONE. The caller frees it. */
-static int32_t *find_lying(const wh_flow_played_t *played) {
+int32_t *wh_flow_find_lying(const wh_flow_played_t *played) {
     const wh_mcs_t *mcs = played->mcs;
     int32_t *lying = wh_array_new(played->tool->place_count, sizeof *lying);
     for (size_t p = 0; p < played->tool->place_count; ++p) {
@@ -27,6 +26,18 @@ static const char *push_place(lua_State *L, const wh_flow_tool_t *tool, int32_t 
                            (int)wh_flow_slot(tool, place));
 }
 
+static void name_wafer(const wh_flow_played_t *played, wh_flow_wafer_t *wafer, int32_t found) {
+    const wh_layout_wafer_t *of = &played->mcs->layout->wafers[found];
+    const int32_t number = (int32_t)(wafer - played->flow->plan.wafers);
+    played->numbers[found] = number;
+    if (played->aboard) {
+        played->aboard[number] = (wh_flow_aboard_t){found, wh_pose_identity()};
+    }
+    free(wafer->name);
+    wafer->name = wh_text_copy(of->name);
+    wafer->recipe = wafer->recipe > 0 ? wafer->recipe : of->recipe;
+}
+
 /* Takes the wafer that lies in its first place. Pushes what is wrong; true: nothing is. */
 static bool bind_wafer(lua_State *L, const wh_flow_played_t *played, const int32_t lying[], size_t number) {
     wh_flow_wafer_t *wafer = &played->flow->plan.wafers[number];
@@ -41,9 +52,7 @@ static bool bind_wafer(lua_State *L, const wh_flow_played_t *played, const int32
         lua_pushfstring(L, "%s in %s is in two lots (expected one)", name, where);
         return false;
     }
-    played->numbers[found] = (int32_t)number;
-    free(wafer->name);
-    wafer->name = wh_text_copy(name);
+    name_wafer(played, wafer, found);
     return true;
 }
 
@@ -65,15 +74,20 @@ static bool is_known(const wh_flow_played_t *played, int32_t found) {
     return wafer != WH_FLOW_NONE && plan->lots[plan->wafers[wafer].lot].arrives_us == 0;
 }
 
-/* A wafer that no lot has, or none yet, would be in the way. */
-static bool check_free(lua_State *L, const wh_flow_played_t *played, const int32_t lying[], size_t place) {
+/* True if a wafer of some lot may come into the place. */
+static bool is_wanted(const wh_flow_played_t *played, int32_t place) {
     const wh_flow_plan_t *plan = &played->flow->plan;
-    const int32_t found = lying[place];
     bool is_wanted = is_gone_to(plan, played->tool->place_stations[place]);
     for (size_t w = 0; w < plan->wafer_count; ++w) {
-        is_wanted = is_wanted || plan->wafers[w].back == (int32_t)place;
+        is_wanted = is_wanted || plan->wafers[w].back == place;
     }
-    if (found == WH_FLOW_NONE || !is_wanted || is_known(played, found)) {
+    return is_wanted;
+}
+
+/* A wafer that no lot has, or none yet, would be in the way. */
+static bool check_free(lua_State *L, const wh_flow_played_t *played, const int32_t lying[], size_t place) {
+    const int32_t found = lying[place];
+    if (found == WH_FLOW_NONE || !is_wanted(played, (int32_t)place) || is_known(played, found)) {
         return true;
     }
     lua_pushfstring(
@@ -96,15 +110,105 @@ static bool check_blades(lua_State *L, const wh_flow_played_t *played) {
     return true;
 }
 
+/* The calls whose carriers stand open at their ports when the flow begins. */
+static void find_calls(const wh_flow_played_t *played) {
+    const wh_flow_plan_t *plan = &played->flow->plan;
+    for (size_t i = 0; i < plan->call_count; ++i) {
+        const int32_t carrier = wh_flow_carrier_at(played, plan->calls[i].station);
+        plan->calls[i].is_there = carrier != WH_NONE && wh_flow_is_first_call(plan, &plan->calls[i]) &&
+                                  (plan->calls[i].carrier == 0 || plan->calls[i].carrier == carrier + 1);
+        played->carriers[i] = plan->calls[i].is_there ? carrier : WH_NONE;
+    }
+}
+
+/* True if the wafer lies in its first place when the flow begins. */
+static bool is_there(const wh_flow_plan_t *plan, int32_t wafer) {
+    const int32_t call = plan->lots[plan->wafers[wafer].lot].call;
+    return call == 0 || plan->calls[call - 1].is_there;
+}
+
+/* True for a load port whose carrier is not open yet: it is looked at when it is. */
+static bool is_to_come(const wh_flow_played_t *played, int32_t station) {
+    return played->tool->stations[station].is_real_port && wh_flow_carrier_at(played, station) == WH_NONE;
+}
+
+/* True if the layout's wafer goes along a route of the flow now. */
+static bool is_under_way(const wh_flow_played_t *played, int32_t found) {
+    const int32_t wafer = played->numbers[found];
+    return wafer != WH_FLOW_NONE && !played->engine->state.wafers[wafer].is_over;
+}
+
+bool wh_flow_bind_late(lua_State *L, const wh_flow_played_t *played, const int32_t lying[],
+                       const wh_flow_wafer_t *wafer) {
+    const int32_t found = lying[wafer->home];
+    if (found != WH_FLOW_NONE && is_under_way(played, found)) {
+        lua_pushfstring(L, "%s in %s is in two lots (expected one)", played->mcs->layout->wafers[found].name,
+                        push_place(L, played->tool, wafer->home));
+        lua_remove(L, -2);
+        return false;
+    }
+    if (found != WH_FLOW_NONE) {
+        name_wafer(played, &played->flow->plan.wafers[wafer - played->flow->plan.wafers], found);
+    }
+    return true;
+}
+
+bool wh_flow_check_stranger(lua_State *L, const wh_flow_played_t *played, const int32_t lying[],
+                            int32_t place) {
+    const int32_t found = lying[place];
+    if (found == WH_FLOW_NONE || is_under_way(played, found) || !is_wanted(played, place)) {
+        return true;
+    }
+    lua_pushfstring(L, "%s lies in %s, where wafers of lots go (expected no wafer)",
+                    played->mcs->layout->wafers[found].name, push_place(L, played->tool, place));
+    lua_remove(L, -2);
+    return false;
+}
+
+/* How many wafers end in the station, whatever their slots. */
+static size_t count_ends(const wh_flow_plan_t *plan, int32_t station) {
+    size_t count = 0;
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        const wh_flow_step_t *last = wh_flow_step_of(plan, w, wh_flow_last_step(plan, w));
+        count +=
+            plan->wafers[w].back == WH_FLOW_NONE && last->station_count == 1 && last->stations[0] == station;
+    }
+    return count;
+}
+
+/* A load port in which routes end has one carrier for all of them, if no lot comes there. */
+static bool check_ends(lua_State *L, const wh_flow_played_t *played) {
+    const wh_flow_plan_t *plan = &played->flow->plan;
+    for (int32_t s = 0; s < (int32_t)played->tool->station_count; ++s) {
+        const wh_flow_station_t *station = &played->tool->stations[s];
+        bool is_called = !station->is_real_port || plan->until_us != WH_FLOW_NEVER;
+        for (size_t i = 0; i < plan->call_count; ++i) {
+            is_called = is_called || plan->calls[i].station == s;
+        }
+        const size_t count = is_called ? 0 : count_ends(plan, s);
+        if (count > (size_t)station->slots) {
+            lua_pushfstring(L,
+                            "%d wafers end in %s, whose carrier has %d slots and is not changed (expected at "
+                            "most so many, several load ports, or `back`)",
+                            (int)count, station->name, (int)station->slots);
+            return false;
+        }
+    }
+    return true;
+}
+
 void wh_flow_bind_wafers(lua_State *L, wh_flow_played_t *played) {
-    int32_t *lying = find_lying(played);
-    bool is_good = check_blades(L, played);
+    int32_t *lying = wh_flow_find_lying(played);
+    bool is_good = check_blades(L, played) && check_ends(L, played);
+    find_calls(played);
     for (size_t i = 0; i < played->flow->plan.wafer_count && is_good; ++i) {
-        is_good = bind_wafer(L, played, lying, i);
-        lua_remove(L, is_good ? -1 : -2);
+        if (is_there(&played->flow->plan, (int32_t)i)) {
+            is_good = bind_wafer(L, played, lying, i);
+            lua_remove(L, is_good ? -1 : -2);
+        }
     }
     for (size_t p = 0; p < played->tool->place_count && is_good; ++p) {
-        is_good = check_free(L, played, lying, p);
+        is_good = is_to_come(played, played->tool->place_stations[p]) || check_free(L, played, lying, p);
     }
     free(lying);
     if (!is_good) {

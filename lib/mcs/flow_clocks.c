@@ -141,6 +141,7 @@ void wh_flow_look(void *context, wh_flow_state_t *state) {
                             played->flow->began_us);
         check_stall(played, state, of, &clocks->clocks[i]);
     }
+    wh_flow_look_at_ports(played, state);
 }
 
 bool wh_flow_pump_lock(void *context, int32_t station, wh_flow_side_t side) {
@@ -165,8 +166,17 @@ void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t 
         return;
     }
     const wh_clocked_t *of = &clocks->of[number];
-    const int64_t error_us = of->of.process_us - of->times->of.process_us;
     wh_clock_place_t *clock = &clocks->places[of->first + (size_t)wh_flow_slot(played->tool, place) - 1];
-    clock->has_next = own_us != WH_FLOW_NONE;
-    clock->next_us = own_us <= 0 ? 0 : own_us + error_us > 1 ? own_us + error_us : 1;
+    clock->has_next = true;
+    clock->next_recipe = wh_flow_recipe_of(&played->flow->plan, wafer, next);
+    clock->next_us = own_us > 0 && own_us + of->error_us < 1 ? 1
+                     : own_us > 0                            ? own_us + of->error_us
+                                                             : own_us;
+}
+
+void wh_flow_forget_processes(const wh_flow_played_t *played) {
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    for (size_t i = 0; clocks && i < clocks->place_count; ++i) {
+        clocks->places[i].has_next = false;
+    }
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/ports.h"
 #include "../reading/layout_internal.h"
 #include "../reading/layout_tool.h"
 #include "../reading/tool_routes.h"
@@ -43,7 +44,18 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     {"route", "string", "the route's name; the only one", false},
     {"arrives", "number", "s; 0", false},
     {"priority", "integer", "the higher one wins ties; 0", false},
+    {"recipe", "string|table",
+     "by which stations process its wafers, in place of their own; also by slot: { default = , [3] = }",
+     false},
     {"back", "string", "the station where each wafer ends in a slot of its number", false},
+    {"carrier", "string",
+     "the layout's carrier that comes to the lot's load port when the lot arrives; robots with axes alone",
+     false},
+    {"leaves", "boolean",
+     "true: the carrier goes when the lot is over; without it as soon as another one waits for its port; "
+     "true "
+     "with `carrier`",
+     false},
     {"dummy", "boolean", "true: its wafers are moved and not counted", false},
     {"map", "boolean",
      "true: a robot maps the station before it takes the first wafer; robots with axes alone", false},
@@ -73,6 +85,7 @@ static int32_t add_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flo
 typedef struct {
     wh_flow_lot_t lot;
     int32_t station, first, last, back;
+    int32_t *recipes; /* by wafer; null: their own */
     char name[WH_NAME_SIZE], route[WH_NAME_SIZE];
     size_t index;
 } lot_t;
@@ -122,19 +135,95 @@ static void read_route_name(wh_reader_t *reader, const wh_timed_name_t *routes, 
     wh_reader_refuse(reader, "route", name, "the name of one of the routes");
 }
 
-static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_timed_name_t *routes,
-                     size_t route_count, lot_t *lot) {
+/* The recipe of one slot: the entry with its number, or `default`. */
+static int32_t read_slot_recipe(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t slot) {
+    char field[24];
+    size_t length = 0;
+    (void)snprintf(field, sizeof field, "[%d]", (int)slot);
+    const bool is_own = lua_rawgeti(reader->L, -1, slot) != LUA_TNIL;
+    if (!is_own) {
+        lua_pop(reader->L, 1);
+        (void)wh_reader_push(reader, "default");
+    }
+    const int type = lua_type(reader->L, -1);
+    const char *name = type == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : "";
+    if (type != LUA_TSTRING && type != LUA_TNIL) {
+        wh_reader_fail(reader, is_own ? field : "default", "the name of a recipe");
+    }
+    const int32_t recipe =
+        type == LUA_TNIL ? 0
+                         : wh_layout_find_recipe(reader, &tool->recipes, is_own ? field : "default", name);
+    lua_pop(reader->L, 1);
+    return recipe;
+}
+
+/* Entries that are no slot of the lot would be read by nobody. */
+static void refuse_other_slots(wh_reader_t *reader, const lot_t *lot) {
+    lua_State *L = reader->L;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const bool is_default = lua_type(L, -2) == LUA_TSTRING && strcmp(lua_tostring(L, -2), "default") == 0;
+        const lua_Integer slot = lua_isinteger(L, -2) ? lua_tointeger(L, -2) : 0;
+        if (!is_default && (slot < lot->first || slot > lot->last)) {
+            wh_reader_fail(reader, NULL, "recipes by slots from %d to %d, and `default`", (int)lot->first,
+                           (int)lot->last);
+        }
+    }
+}
+
+/* `recipe`: a name, or names by slot. */
+static void read_recipes(wh_reader_t *reader, const wh_flow_tool_t *tool, lot_t *lot) {
+    const int type = wh_reader_push(reader, "recipe");
+    lua_pop(reader->L, 1);
+    if (type == LUA_TNIL) {
+        return;
+    }
+    const size_t count = (size_t)(lot->last - lot->first) + 1;
+    const int32_t one = type == LUA_TTABLE ? 0 : wh_layout_read_recipe(reader, &tool->recipes);
+    lot->recipes = wh_layout_memory(reader->L, count, sizeof *lot->recipes);
+    if (type == LUA_TTABLE) {
+        (void)wh_reader_enter(reader, "recipe");
+        refuse_other_slots(reader, lot);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        lot->recipes[i] = type == LUA_TTABLE ? read_slot_recipe(reader, tool, lot->first + (int32_t)i) : one;
+    }
+    if (type == LUA_TTABLE) {
+        wh_reader_leave(reader);
+    }
+}
+
+/* `carrier` and `leaves`, of a load port's lot. */
+static void read_carrier(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_layout_t *layout,
+                         lot_t *lot) {
+    const bool is_port = tool->stations[lot->station].is_real_port;
+    const char *const fields[] = {"carrier", "leaves"};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0] && !is_port; ++i) {
+        wh_layout_refuse_field(reader, fields[i],
+                               !layout->tool ? "nothing: the lot comes from no load port"
+                                             : "nothing: the robots are times alone");
+    }
+    if (wh_reader_has(reader, "carrier")) {
+        lot->lot.carrier = 1 + wh_layout_read_name(reader, layout, "carrier", NULL, wh_layout_find_carrier,
+                                                   "a carrier of the layout, by name");
+    }
+    lot->lot.leaves = wh_reader_boolean(reader, "leaves", lot->lot.carrier > 0);
+}
+
+static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_layout_t *layout,
+                     const wh_timed_name_t *routes, size_t route_count, lot_t *lot) {
     wh_reader_refuse_unknown(reader, wh_flow_lot_fields);
     if (wh_reader_has(reader, "name")) {
         wh_reader_text(reader, "name", NULL, lot->name, sizeof lot->name);
     }
     read_wafers(reader, tool, lot);
+    read_recipes(reader, tool, lot);
     read_route_name(reader, routes, route_count, lot->route);
     lot->lot.arrives_us = wh_flow_read_us(reader, "arrives", 0);
     lot->lot.priority = wh_reader_whole(reader, "priority", 0, -1000, 1000);
     lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
     lot->lot.is_mapped = wh_reader_boolean(reader, "map", false);
     wh_flow_refuse_timed(reader, tool, lot->station, "map", lot->lot.is_mapped);
+    read_carrier(reader, tool, layout, lot);
     lot->back = WH_FLOW_NONE;
     if (wh_reader_has(reader, "back")) {
         char back[WH_NAME_SIZE];
@@ -172,7 +261,8 @@ static void add_wafers(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const l
             .home = tool->stations[lot->station].first_place + slot - 1,
             .back =
                 lot->back == WH_FLOW_NONE ? WH_FLOW_NONE : tool->stations[lot->back].first_place + slot - 1,
-            .back_station = WH_FLOW_NONE};
+            .back_station = WH_FLOW_NONE,
+            .recipe = lot->recipes ? lot->recipes[slot - lot->first] : 0};
     }
 }
 
@@ -246,7 +336,8 @@ static void look_at_unused(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_f
     }
 }
 
-static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
+static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_layout_t *layout,
+                      wh_flow_plan_t *plan) {
     size_t route_count = 0, wafers = 0;
     if (!wh_reader_enter(reader, "routes")) {
         wh_reader_refuse(reader, "routes", NULL, "a table of routes by name");
@@ -262,7 +353,7 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
     lua_insert(reader->L, -2); /* below the table being read */
     for (size_t i = 0; i < count; ++i) {
         (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        read_lot(reader, tool, routes, route_count, &lots[i]);
+        read_lot(reader, tool, layout, routes, route_count, &lots[i]);
         lots[i].index = i;
         wafers += (size_t)(lots[i].last - lots[i].first + 1);
         wh_reader_leave(reader);
@@ -330,11 +421,12 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
     wh_reader_leave(reader);
 }
 
-void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *flow) {
+void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_layout_t *layout,
+                  wh_flow_t *flow) {
     static const char *const lates[] = {"fail", "tell", NULL};
     wh_flow_plan_t *plan = &flow->plan;
     wh_reader_refuse_unknown(reader, wh_flow_fields);
-    read_lots(reader, tool, plan);
+    read_lots(reader, tool, layout, plan);
     wh_flow_read_rule(reader, tool, plan);
     read_downs(reader, tool, plan);
     const int on_error = wh_reader_push(reader, "on_error");

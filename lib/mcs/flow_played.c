@@ -30,7 +30,8 @@ static void drop(wh_flow_played_t *played, bool has_result) {
     free(played->is_taken);
     free(played->heard);
     wh_flow_timed_close(played);
-    played->numbers = NULL;
+    free(played->carriers);
+    played->numbers = played->carriers = NULL;
     played->is_mapped = played->is_taken = NULL;
     played->heard = NULL;
 }
@@ -64,6 +65,7 @@ static void make_room(wh_flow_played_t *played) {
         played->numbers[w] = WH_FLOW_NONE;
     }
     played->is_mapped = wh_array_new(played->flow->plan.lot_count, sizeof *played->is_mapped);
+    played->carriers = wh_array_new(played->flow->plan.call_count + 1, sizeof *played->carriers);
     played->is_taken = wh_array_new(played->tool->station_count, sizeof *played->is_taken);
 }
 
@@ -155,11 +157,13 @@ static int step_flow(lua_State *L) {
     return 1;
 }
 
-/* native.is_flow_due(): true if something was told since the last step, or the flow is over. */
+/* native.is_flow_due(): whether something was told since the last step, or the flow is over; and whether it
+ * is over. */
 static int is_flow_due(lua_State *L) {
     const wh_flow_played_t *played = played_of(L);
     lua_pushboolean(L, played->is_due || played->engine->is_over);
-    return 1;
+    lua_pushboolean(L, played->engine->is_over);
+    return 2;
 }
 
 /* native.fail_flow(text): the flow ends with this cause. */
@@ -389,6 +393,7 @@ static int end_flow(lua_State *L) {
     for (size_t s = 0; s < played->tool->station_count; ++s) {
         wh_mcs_set_down(mcs, (int32_t)s, false);
     }
+    wh_flow_forget_processes(played);
     const bool has_failed = wh_flow_own_close(L, &played->flow->plan);
     drop(played, is_good);
     if (!is_good) {

@@ -32,10 +32,11 @@ typedef struct wh_flow_played {
     wh_flow_measure_t *measure; /* null: it is over, and closed */
     wh_flow_engine_t *engine;   /* of that */
     wh_flow_outside_t outside;
-    int32_t *numbers;         /* by wafer of the layout: that of the flow, or WH_FLOW_NONE */
-    bool *is_mapped;          /* by lot */
-    bool *is_taken;           /* by station: its door's shutting, or its work, is carried out */
+    int32_t *numbers; /* by wafer of the layout: that of the flow, or WH_FLOW_NONE */
+    bool *is_mapped;  /* by lot */
+    bool *is_taken;   /* by station: its door's shutting, its work, or its port's call is carried out */
     wh_flow_aboard_t *aboard; /* by wafer of the flow, as robots that are times alone carry them */
+    int32_t *carriers;        /* by call: the layout's carrier that brought its lots, or WH_NONE */
     wh_flow_heard_t *heard;
     size_t heard_count, heard_capacity;
     bool is_due;                /* something was told since the last step */
@@ -47,6 +48,24 @@ typedef struct wh_flow_played {
 /* Lots' wafers get the names of those that lie in their slots. Raises what cannot be: a slot without a
  * wafer, a wafer in the way, a wafer in two lots. */
 void wh_flow_bind_wafers(lua_State *L, wh_flow_played_t *played);
+
+/* By place of the tool the layout's wafer that lies there, or WH_FLOW_NONE. The caller frees it. */
+int32_t *wh_flow_find_lying(const wh_flow_played_t *played);
+
+/* A carrier has come: its lot's wafer is the one that lies in its first place, if there is one. False: that
+ * one is another wafer of the flow; what is wrong is pushed. */
+bool wh_flow_bind_late(lua_State *L, const wh_flow_played_t *played, const int32_t lying[],
+                       const wh_flow_wafer_t *wafer);
+
+/* False if a wafer that no lot has lies in this place, where wafers of lots go: that is pushed. */
+bool wh_flow_check_stranger(lua_State *L, const wh_flow_played_t *played, const int32_t lying[],
+                            int32_t place);
+
+/* The layout's carrier that stands open at the load port, or WH_NONE. */
+int32_t wh_flow_carrier_at(const wh_flow_played_t *played, int32_t station);
+
+/* Each load port is told to the engine. */
+void wh_flow_look_at_ports(const wh_flow_played_t *played, wh_flow_state_t *state);
 
 /* The time of the flow, us. */
 int64_t wh_flow_played_now(const wh_flow_played_t *played);
@@ -62,6 +81,9 @@ void wh_flow_say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state)
 
 /* The next wafer that comes to this place is processed as its step has it. */
 void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t place);
+
+/* The flow is over: wafers that come later are processed as the layout has it. */
+void wh_flow_forget_processes(const wh_flow_played_t *played);
 
 /* Robots that are times alone: flow_timed.c. A wafer that one picks leaves the cell with the slice in which
  * that ends, and comes back with the one in which its placing ends, by orders to the simulator. */

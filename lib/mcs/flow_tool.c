@@ -37,6 +37,7 @@ static void fill_station(const wh_layout_t *layout, size_t s, wh_flow_station_t 
     }
     station->name = wh_text_copy(layout->stations[s].name);
     station->slots = layout->places[s].slots;
+    station->is_load_port = station->has_carriers = station->is_real_port = layout->stations[s].port != NULL;
     const bool has_sensor = wh_layout_scanner(layout, layout->places[s].chuck) != NULL;
     station->works = layout->stations[s].prealigner && has_sensor ? WH_FLOW_WORK_ALIGN
                      : layout->stations[s].flipper                ? WH_FLOW_WORK_FLIP
@@ -108,6 +109,9 @@ wh_flow_tool_t *wh_flow_tool_of_layout(lua_State *L, const wh_layout_t *layout) 
     lua_rawsetp(L, LUA_REGISTRYINDEX, tool);
     wh_flow_tool_open(tool, layout->robot_count + (layout->timed ? layout->timed->robot_count : 0),
                       layout->station_count);
+    if (layout->recipes) {
+        tool->recipes = *layout->recipes;
+    }
     for (size_t s = 0; s < layout->station_count; ++s) {
         fill_station(layout, s, &tool->stations[s]);
     }

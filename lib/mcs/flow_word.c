@@ -140,6 +140,7 @@ static void push_result(lua_State *L, wh_mcs_t *mcs, const wh_flow_figures_t *fi
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
     wh_lua_set_integer(L, "left", (int64_t)result->left);
     wh_lua_set_integer(L, "lost", (int64_t)result->lost);
+    wh_lua_set_integer(L, "skipped", (int64_t)result->skipped);
     if (result->period > 0) {
         lua_pushnumber(L, seconds(result->cycle_us) / result->period);
         lua_setfield(L, -2, "cycle_s");
@@ -241,7 +242,7 @@ wh_flow_t *wh_flow_read_word(lua_State *L, wh_mcs_t *mcs, const wh_flow_tool_t *
     record->flow->line = wh_sandbox_line(L, mcs->script);
     (void)snprintf(where, sizeof where, "%.200s:%d: flow", mcs->script, record->flow->line);
     wh_reader_start(&reader, L, where);
-    wh_flow_read(&reader, tool, record->flow);
+    wh_flow_read(&reader, tool, mcs->layout, record->flow);
     return record->flow;
 }
 

@@ -252,15 +252,16 @@ static char tasks_key;
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {
-        module_functions,         wh_mcs_cell_functions,        wh_mcs_command_functions,
-        wh_mcs_miss_functions,    wh_mcs_fault_functions,       wh_mcs_describe_functions,
-        wh_mcs_plan_functions,    wh_mcs_play_functions,        wh_mcs_query_functions,
-        wh_mcs_scan_functions,    wh_mcs_definition_functions,  wh_mcs_saved_functions,
-        wh_mcs_edge_functions,    wh_mcs_align_functions,       wh_mcs_calibration_functions,
-        wh_mcs_arrival_functions, wh_mcs_centring_functions,    wh_mcs_teaching_functions,
-        wh_mcs_lane_functions,    wh_mcs_job_functions,         wh_mcs_believed_functions,
-        wh_mcs_flow_functions,    wh_mcs_flow_played_functions, wh_mcs_flow_timed_functions,
-        wh_mcs_own_functions,     wh_mcs_clock_functions,       wh_mcs_port_functions};
+        module_functions,           wh_mcs_cell_functions,        wh_mcs_command_functions,
+        wh_mcs_miss_functions,      wh_mcs_fault_functions,       wh_mcs_describe_functions,
+        wh_mcs_plan_functions,      wh_mcs_play_functions,        wh_mcs_query_functions,
+        wh_mcs_scan_functions,      wh_mcs_definition_functions,  wh_mcs_saved_functions,
+        wh_mcs_edge_functions,      wh_mcs_align_functions,       wh_mcs_calibration_functions,
+        wh_mcs_arrival_functions,   wh_mcs_centring_functions,    wh_mcs_teaching_functions,
+        wh_mcs_lane_functions,      wh_mcs_job_functions,         wh_mcs_believed_functions,
+        wh_mcs_flow_functions,      wh_mcs_flow_played_functions, wh_mcs_flow_timed_functions,
+        wh_mcs_flow_call_functions, wh_mcs_own_functions,         wh_mcs_clock_functions,
+        wh_mcs_port_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);

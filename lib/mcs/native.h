@@ -109,6 +109,7 @@ extern const luaL_Reg wh_mcs_believed_functions[];
 extern const luaL_Reg wh_mcs_flow_functions[];
 extern const luaL_Reg wh_mcs_flow_played_functions[];
 extern const luaL_Reg wh_mcs_flow_timed_functions[];
+extern const luaL_Reg wh_mcs_flow_call_functions[];
 extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];

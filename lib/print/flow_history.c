@@ -37,7 +37,8 @@ static int32_t last_process(const wh_flow_figures_t *figures, int32_t wafer) {
     for (int32_t k = wh_flow_last_step(plan, wafer) - 1; k > 0; --k) {
         const wh_flow_step_t *step = wh_flow_step_of(plan, wafer, k);
         for (size_t i = 0; i < step->station_count; ++i) {
-            if (wh_flow_step_us(step, &figures->tool->stations[step->stations[i]]) > 0) {
+            if (wh_flow_step_us(step, &figures->tool->stations[step->stations[i]],
+                                plan->wafers[wafer].recipe) > 0) {
                 return k;
             }
         }
@@ -155,35 +156,49 @@ static void write_json(const line_t *line, const char *const texts[], double tim
             ? wh_json_set(json_object(), "time_s %g module %s ept %s", time_s, texts[5], texts[6])
             : wh_json_set(json_object(), "time_s %g wafer %s lot %s place %s location %s processing %s",
                           time_s, texts[0], texts[1], texts[2], texts[3], texts[4]);
+    if (texts[7]) {
+        wh_json_put(object, "recipe", wh_json_text(texts[7]));
+    }
     (void)json_dumpf(object, out, JSON_REAL_PRECISION(17));
     json_decref(object);
+}
+
+/* Null: it has none. */
+static const char *recipe_of(const wh_flow_figures_t *figures, int32_t wafer) {
+    const int32_t recipe = figures->plan->wafers[wafer].recipe;
+    return recipe > 0 ? figures->tool->recipes.names[recipe - 1] : NULL;
+}
+
+static void write_line(const wh_flow_figures_t *figures, const line_t *line, bool is_csv, FILE *out) {
+    char place[200];
+    name_place(figures->tool, line, place, sizeof place);
+    const bool is_module = line->wafer == WH_FLOW_NONE;
+    const wh_flow_wafer_t *wafer = is_module ? NULL : &figures->plan->wafers[line->wafer];
+    const char *const texts[] = {is_module ? NULL : wafer->name,
+                                 is_module ? NULL : figures->plan->lots[wafer->lot].name,
+                                 is_module ? NULL : place,
+                                 line->location,
+                                 line->processing,
+                                 is_module ? place : NULL,
+                                 line->ept,
+                                 is_module ? NULL : recipe_of(figures, line->wafer)};
+    if (is_csv) {
+        write_csv(texts, figures->tool->recipes.count > 0 ? 8 : 7, (double)line->us / 1e6, out);
+    } else {
+        write_json(line, texts, (double)line->us / 1e6, out);
+    }
+    fputc('\n', out);
 }
 
 bool wh_flow_history_write(const wh_flow_figures_t *figures, bool is_csv, FILE *out) {
     lines_t lines = {.figures = figures};
     find_lines(&lines);
     if (is_csv) {
-        fputs("time_s,wafer,lot,place,location,processing,module,ept\n", out);
+        fputs("time_s,wafer,lot,place,location,processing,module,ept", out);
+        fputs(figures->tool->recipes.count > 0 ? ",recipe\n" : "\n", out);
     }
     for (size_t i = 0; i < lines.count; ++i) {
-        const line_t *line = &lines.lines[i];
-        char place[200];
-        name_place(figures->tool, line, place, sizeof place);
-        const bool is_module = line->wafer == WH_FLOW_NONE;
-        const wh_flow_wafer_t *wafer = is_module ? NULL : &figures->plan->wafers[line->wafer];
-        const char *const texts[] = {is_module ? NULL : wafer->name,
-                                     is_module ? NULL : figures->plan->lots[wafer->lot].name,
-                                     is_module ? NULL : place,
-                                     line->location,
-                                     line->processing,
-                                     is_module ? place : NULL,
-                                     line->ept};
-        if (is_csv) {
-            write_csv(texts, sizeof texts / sizeof texts[0], (double)line->us / 1e6, out);
-        } else {
-            write_json(line, texts, (double)line->us / 1e6, out);
-        }
-        fputc('\n', out);
+        write_line(figures, &lines.lines[i], is_csv, out);
     }
     free(lines.lines);
     return !ferror(out);

@@ -112,6 +112,10 @@ static json_t *lot_wafer(const wh_flow_figures_t *figures, size_t w) {
                                  figures->tool->stations[figures->tool->place_stations[home]].name,
                                  (int)wh_flow_slot(figures->tool, home));
     wh_json_put(object, "fate", wh_json_text(wh_flow_fate_names[figures->fates[w]]));
+    if (figures->tool->recipes.count > 0) {
+        wh_json_put(object, "recipe",
+                    wh_json_text(of->recipe > 0 ? figures->tool->recipes.names[of->recipe - 1] : NULL));
+    }
     wh_json_put(object, "came_s", seconds(figures->came_us ? figures->came_us[w] : WH_FLOW_NEVER));
     return object;
 }
@@ -149,12 +153,14 @@ static json_t *visit(const void *subject, size_t i) {
 static json_t *doing(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
     const wh_flow_doing_t *of = &figures->doings[i];
-    const char *what = of->kind == WH_FLOW_EVENT_CLEAN  ? "clean"
-                       : of->kind == WH_FLOW_EVENT_DOWN ? "down"
-                       : of->kind == WH_FLOW_EVENT_OPEN ? "open"
-                       : of->kind == WH_FLOW_EVENT_SHUT ? "shut"
-                       : of->side == WH_FLOW_VACUUM     ? "pump"
-                                                        : "vent";
+    const char *what = of->kind == WH_FLOW_EVENT_CLEAN   ? "clean"
+                       : of->kind == WH_FLOW_EVENT_DOWN  ? "down"
+                       : of->kind == WH_FLOW_EVENT_OPEN  ? "open"
+                       : of->kind == WH_FLOW_EVENT_SHUT  ? "shut"
+                       : of->kind == WH_FLOW_EVENT_COMES ? "comes"
+                       : of->kind == WH_FLOW_EVENT_GOES  ? "goes"
+                       : of->side == WH_FLOW_VACUUM      ? "pump"
+                                                         : "vent";
     return wh_json_set(json_object(), "station %s slot %lld what %s begin_s %g end_s %g",
                        figures->tool->stations[of->station].name,
                        of->place == WH_FLOW_NONE ? WH_JSON_NONE
@@ -246,9 +252,9 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
     if (result->is_steady) {
         wh_json_put(object, "ended_steady", json_true());
     }
-    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g lost %lld", result->no_cycle,
-                      result->may_block, (double)figures->end_us / 1e6, (double)flow->began_us / 1e6,
-                      (long long)result->lost);
+    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g lost %lld skipped %lld",
+                      result->no_cycle, result->may_block, (double)figures->end_us / 1e6,
+                      (double)flow->began_us / 1e6, (long long)result->lost, (long long)result->skipped);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
     (void)wh_json_add(object, "textbook busiest longest_stay_s path gains waits windows gaps",
                       textbook(figures), busiest(figures), seconds(figures->stays.longest_us),

@@ -284,6 +284,7 @@ static void print_notes(const wh_printer_t *printer, const wh_flow_figures_t *fi
         fputc('\n', printer->out);
     }
     print_fate(printer, figures, WH_FLOW_FATE_LOST, "! lost where a station failed: ");
+    print_fate(printer, figures, WH_FLOW_FATE_SKIPPED, "! left in their carriers: ");
     print_fate(printer, figures, WH_FLOW_FATE_SHORTENED,
                "! at their ends without steps whose stations failed: ");
     if (figures->result.may_block) {

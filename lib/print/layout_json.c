@@ -216,7 +216,7 @@ static json_t *station(const void *subject, size_t i) {
         wh_json_put(object, "by", servers(layout, from));
     }
     if (from->times) {
-        wh_json_put(object, "times", wh_layout_times_to_json(from->times));
+        wh_json_put(object, "times", wh_layout_times_to_json(layout, from->times));
     }
     if (from->port) {
         wh_json_put(object, "port", wh_layout_port_to_json(from->port));

@@ -13,7 +13,8 @@
 
 void wh_layout_times_fill(const wh_layout_t *layout, wh_grid_t *grid);
 
-/* { process, window (null: none), clean, pump (null: none) }, times in s. */
-json_t *wh_layout_times_to_json(const wh_layout_times_t *times);
+/* { process, window (null: none), clean, pump (null: none) }, times in s; what goes by recipe in
+ * `by_recipe`. */
+json_t *wh_layout_times_to_json(const wh_layout_t *layout, const wh_layout_times_t *times);
 
 #endif

@@ -8,6 +8,7 @@
 #include "../layout/grips.h"
 #include "../layout/words.h"
 #include "layout_internal.h"
+#include "layout_tool.h"
 
 /* -------------------------------------------------------------------------------------------------- ports */
 
@@ -79,18 +80,21 @@ static void refuse_others(wh_reader_t *reader) {
     }
 }
 
+void wh_layout_read_port_steps(wh_reader_t *reader, wh_load_port_of_t *of) {
+    read_steps(reader, of);
+    read_handshake(reader, of);
+    of->begins = (wh_load_port_state_t)wh_reader_choice(reader, "state", WH_NONE, wh_load_port_state_names);
+}
+
 static wh_layout_port_t *read_port(wh_reader_t *reader, const wh_layout_t *layout) {
     wh_layout_port_t *port = wh_layout_memory(reader->L, 1, sizeof *port);
     refuse_others(reader);
     wh_reader_open_section(reader, "port", wh_layout_port_fields);
-    read_steps(reader, &port->of);
+    wh_layout_read_port_steps(reader, &port->of);
     port->of.goes_to = (wh_load_port_state_t)(wh_reader_choice(reader, "goes", WH_LOAD_PORT_MAPPED - 1,
                                                                wh_load_port_state_names + 1) +
                                               1);
-    read_handshake(reader, &port->of);
     read_mapper(reader, layout, &port->mapping);
-    port->of.begins =
-        (wh_load_port_state_t)wh_reader_choice(reader, "state", WH_NONE, wh_load_port_state_names);
     wh_reader_leave(reader);
     return port;
 }
@@ -188,6 +192,7 @@ static void read_carrier(wh_reader_t *reader, wh_layout_t *layout, const char *n
     carrier->at = read_at(reader, layout);
     carrier->count = read_slots(reader, most_slots(layout, carrier->at), has);
     carrier->has = has;
+    carrier->recipe = wh_layout_read_recipe(reader, layout->recipes);
     ++layout->carrier_count;
 }
 
@@ -238,6 +243,7 @@ static void add_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t c, int32_
     wafer->slot = slot;
     wafer->thickness = layout->wafer_thickness;
     wafer->carrier = (int32_t)c + 1;
+    wafer->recipe = carrier->recipe;
     layout->start[w].base_from_wafer =
         carrier->at == WH_NONE ? wh_layout_outside(w) : wh_layout_lying(layout, carrier->at, slot);
 }

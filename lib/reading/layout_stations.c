@@ -10,6 +10,7 @@
 #include "../math/deviate.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
+#include "layout_tool.h"
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
@@ -277,6 +278,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
                                          "the name of a station of this layout");
     wafer->slot = wh_reader_whole(reader, "slot", 0, 1, layout->places[wafer->station].slots);
     wafer->thickness = wh_reader_apart_from(reader, "thickness", layout->wafer_thickness);
+    wafer->recipe = wh_layout_read_recipe(reader, layout->recipes);
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
 

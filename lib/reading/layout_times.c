@@ -18,7 +18,38 @@ int64_t wh_layout_read_us(wh_reader_t *reader, const char *field) {
     return wh_layout_us(wh_reader_apart(reader, field));
 }
 
-static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
+static void read_process(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes) {
+    double by[WH_FLOW_RECIPES];
+    bool is_table = false;
+    station->process_us = wh_layout_us(wh_layout_read_by_recipe(reader, "process", recipes, by, &is_table));
+    station->has_recipes = station->has_recipes || is_table;
+    for (size_t i = 0; i < WH_FLOW_RECIPES; ++i) {
+        station->by_recipe[i].process_us = wh_layout_us(by[i]);
+        station->by_recipe[i].idle_us = WH_FLOW_NEVER;
+    }
+}
+
+static void read_after(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes) {
+    double by[WH_FLOW_RECIPES];
+    bool is_table = false;
+    station->clean_after = (int32_t)wh_layout_read_by_recipe(reader, "after", recipes, by, &is_table);
+    station->has_recipes = station->has_recipes || is_table;
+    for (size_t i = 0; i < WH_FLOW_RECIPES; ++i) {
+        station->by_recipe[i].clean_after = (int32_t)by[i];
+    }
+}
+
+static void read_idle(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes) {
+    double by[WH_FLOW_RECIPES];
+    bool is_table = false;
+    station->idle_us = wh_layout_us(wh_layout_read_by_recipe(reader, "idle", recipes, by, &is_table));
+    station->has_recipes = station->has_recipes || is_table;
+    for (size_t i = 0; i < WH_FLOW_RECIPES; ++i) {
+        station->by_recipe[i].idle_us = wh_layout_us(by[i]);
+    }
+}
+
+static void read_clean(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes) {
     if (!wh_reader_open(reader, "clean", wh_layout_clean_fields)) {
         return;
     }
@@ -26,12 +57,12 @@ static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
         wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
     }
     if (wh_reader_has(reader, "after")) {
-        station->clean_after = (int32_t)wh_reader_apart(reader, "after");
+        read_after(reader, station, recipes);
     }
     station->clean_us = wh_layout_read_us(reader, "seconds");
     station->cleans_full = !(wh_reader_apart(reader, "empty") > 0);
     if (wh_reader_has(reader, "idle")) {
-        station->idle_us = wh_layout_read_us(reader, "idle");
+        read_idle(reader, station, recipes);
     }
     wh_reader_leave(reader);
 }
@@ -53,13 +84,13 @@ static void read_pump(wh_reader_t *reader, wh_flow_station_t *station, const wh_
     station->side = (wh_flow_side_t)wh_reader_apart(reader, "state");
 }
 
-void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
+void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes,
                               const wh_reader_field_t *pump_fields) {
-    station->process_us = wh_layout_read_us(reader, "process");
+    read_process(reader, station, recipes);
     if (wh_reader_has(reader, "window")) {
         station->window_us = wh_layout_read_us(reader, "window");
     }
-    read_clean(reader, station);
+    read_clean(reader, station, recipes);
     read_pump(reader, station, pump_fields);
 }
 
@@ -164,13 +195,14 @@ static void check_homes(wh_reader_t *reader, const wh_layout_t *layout, const wh
     }
 }
 
-static wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
+static wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_t *layout, size_t s,
+                                     wh_flow_recipes_t *recipes) {
     const wh_layout_station_t *station = &layout->stations[s];
     wh_layout_times_t *times = wh_layout_memory(reader->L, 1, sizeof *times);
     times->of.slots = layout->places[s].slots;
     times->of.window_us = times->of.idle_us = WH_FLOW_NEVER;
     times->side = WH_FLOW_BOTH;
-    wh_layout_read_clockwork(reader, &times->of, wh_layout_lock_fields);
+    wh_layout_read_clockwork(reader, &times->of, recipes, wh_layout_lock_fields);
     if (station->by) {
         read_servers(reader, layout, station, times);
     } else {
@@ -234,6 +266,8 @@ static bool is_port(wh_reader_t *reader) {
 }
 
 void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_flow_recipes_t *recipes = wh_layout_memory(reader->L, 1, sizeof *recipes);
+    layout->recipes = recipes;
     wh_reader_enter(reader, "stations");
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_layout_station_t *station = &layout->stations[s];
@@ -244,7 +278,7 @@ void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout) {
         }
         wh_layout_times_t *times = NULL;
         if (says_any(reader) && !is_port(reader)) {
-            times = read_times(reader, layout, s);
+            times = read_times(reader, layout, s, recipes);
         } else {
             refuse_sides(reader, layout);
         }

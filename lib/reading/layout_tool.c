@@ -94,11 +94,53 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
     }
 }
 
-static void read_station(wh_reader_t *reader, wh_flow_station_t *station) {
+static int64_t sum_us(const wh_load_port_of_t *of, const wh_load_port_step_t steps[], size_t count) {
+    int64_t us = 0;
+    for (size_t i = 0; i < count; ++i) {
+        us += of->us[steps[i]];
+    }
+    for (size_t step = WH_LOAD_PORT_TP1; of->is_e84 && step <= WH_LOAD_PORT_TP5; ++step) {
+        us += of->us[step];
+    }
+    return us;
+}
+
+/* A port's steps are sums of times here, from the vehicle to the map and back. */
+static void read_port(wh_reader_t *reader, wh_flow_station_t *station) {
+    static const wh_load_port_step_t up[] = {WH_LOAD_PORT_CLAMP, WH_LOAD_PORT_DOCK, WH_LOAD_PORT_OPENS,
+                                             WH_LOAD_PORT_MAP};
+    static const wh_load_port_step_t down[] = {WH_LOAD_PORT_CLOSE, WH_LOAD_PORT_UNDOCK, WH_LOAD_PORT_UNCLAMP};
+    wh_load_port_of_t of = {0};
+    if (!wh_reader_has(reader, "port")) {
+        return;
+    }
+    if (!station->is_load_port) {
+        wh_reader_refuse(reader, "port", NULL, "nothing: its `kind` is not \"load_port\"");
+    }
+    (void)wh_reader_open(reader, "port", wh_layout_port_fields);
+    wh_layout_refuse_field(reader, "goes", "nothing: the robots are times alone");
+    wh_layout_refuse_field(reader, "mapper", "nothing: the robots are times alone");
+    wh_layout_read_port_steps(reader, &of);
+    const bool is_between = of.begins >= WH_LOAD_PORT_PLACED && of.begins <= WH_LOAD_PORT_DOCKED;
+    if ((int)of.begins != WH_NONE && is_between) {
+        wh_reader_refuse(reader, "state", wh_load_port_state_name(of.begins),
+                         "\"absent\", or \"open\" or \"mapped\", which are one: the robots are times alone");
+    }
+    station->has_carriers = true;
+    station->is_absent = of.begins == WH_LOAD_PORT_ABSENT;
+    station->comes_us =
+        sum_us(&of, up, sizeof up / sizeof up[0]) + (of.is_e84 ? 0 : of.us[WH_LOAD_PORT_PLACE]);
+    station->goes_us =
+        sum_us(&of, down, sizeof down / sizeof down[0]) + (of.is_e84 ? 0 : of.us[WH_LOAD_PORT_REMOVE]);
+    wh_reader_leave(reader);
+}
+
+static void read_station(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes) {
     wh_reader_refuse_unknown(reader, wh_layout_timed_station_fields);
     station->is_load_port = wh_reader_apart(reader, "kind") > 0;
     station->slots = (int32_t)wh_reader_apart_from(reader, "slots", station->is_load_port ? 25 : 1);
-    wh_layout_read_clockwork(reader, station, wh_layout_pump_fields);
+    wh_layout_read_clockwork(reader, station, recipes, wh_layout_pump_fields);
+    read_port(reader, station);
 }
 
 /* Marks the slots that one side alone fills. */
@@ -262,7 +304,7 @@ static void read_stations(wh_reader_t *reader, wh_flow_tool_t *tool) {
         if (!wh_reader_enter(reader, tool->stations[s].name)) {
             wh_reader_refuse(reader, tool->stations[s].name, NULL, "a station's table; {} will do");
         }
-        read_station(reader, &tool->stations[s]);
+        read_station(reader, &tool->stations[s], &tool->recipes);
         wh_reader_leave(reader);
     }
     wh_flow_tool_number(tool);

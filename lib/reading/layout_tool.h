@@ -2,6 +2,7 @@
 #ifndef WH_READING_LAYOUT_TOOL_H
 #define WH_READING_LAYOUT_TOOL_H
 
+#include "../flow/load_port.h"
 #include "../flow/tool.h"
 #include "../layout/times.h"
 #include "../script/reader.h"
@@ -48,8 +49,24 @@ int64_t wh_layout_read_us(wh_reader_t *reader, const char *field);
 void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]);
 
 /* `process`, `window`, `clean`, `pump` and `state` of the station at which the reader is; `pump_fields` are
- * those that a pump may have there. */
-void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
+ * those that a pump may have there. Its recipes are kept. */
+void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station, wh_flow_recipes_t *recipes,
                               const wh_reader_field_t *pump_fields);
+
+/* The times of a load port's steps and its state, WH_NONE without the field, from the table at which the
+ * reader is. */
+void wh_layout_read_port_steps(wh_reader_t *reader, wh_load_port_of_t *of);
+
+/* Reads a number, or a table of numbers by recipe with `default`, by the row of the field. Returns the number
+ * for wafers without a recipe, and has that of each recipe in `by`, number 1 first. `is_table`: some of them
+ * may differ. */
+double wh_layout_read_by_recipe(wh_reader_t *reader, const char *field, wh_flow_recipes_t *recipes,
+                                double by[WH_FLOW_RECIPES], bool *is_table);
+
+/* The number of the recipe of this name, which stands in this field; an unknown name is refused with those
+ * that there are. And that of the field `recipe`, 0 without it. */
+int32_t wh_layout_find_recipe(const wh_reader_t *reader, const wh_flow_recipes_t *recipes, const char *field,
+                              const char *name);
+int32_t wh_layout_read_recipe(wh_reader_t *reader, const wh_flow_recipes_t *recipes);
 
 #endif

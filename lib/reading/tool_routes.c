@@ -15,6 +15,7 @@
 
 const wh_reader_field_t wh_flow_step_fields[] = {
     {"process", "number", "s, in place of the station's", false},
+    {"recipe", "string", "by which the step processes all wafers, in place of theirs", false},
     {"hot", "boolean", "true: the second arm alone takes from it", false},
     {"align", "number", "degrees: a prealigner turns the wafer's notch there; robots with axes alone", false},
     {"flip", "boolean", "true: a flipper turns the wafer over; robots with axes alone", false},
@@ -141,6 +142,18 @@ static void check_clocks(wh_reader_t *reader, const wh_flow_tool_t *tool, const 
     }
 }
 
+/* A recipe by which no station of the step takes another time would be read by nobody. */
+static void check_recipes(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_step_t *step) {
+    bool is_any = step->recipe == 0;
+    for (size_t i = 0; i < step->station_count; ++i) {
+        is_any = is_any || tool->stations[step->stations[i]].has_recipes;
+    }
+    if (!is_any) {
+        wh_reader_refuse(reader, "recipe", tool->recipes.names[step->recipe - 1],
+                         "a step with a station that has times by recipe");
+    }
+}
+
 static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t index, wh_flow_step_t *step) {
     char name[WH_NAME_SIZE], field[32];
     (void)snprintf(field, sizeof field, "[%zu]", index);
@@ -164,6 +177,11 @@ static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t in
     }
     step->process_us =
         wh_reader_has(reader, "process") ? wh_flow_read_us(reader, "process", 0) : WH_FLOW_NONE;
+    step->recipe = wh_layout_read_recipe(reader, &tool->recipes);
+    if (step->recipe > 0 && step->process_us != WH_FLOW_NONE) {
+        wh_reader_refuse(reader, "recipe", NULL, "nothing beside `process`");
+    }
+    check_recipes(reader, tool, step);
     step->second_arm = wh_reader_boolean(reader, "hot", false);
     check_clocks(reader, tool, step);
     read_work(reader, tool, step);

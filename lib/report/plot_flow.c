@@ -141,6 +141,9 @@ static void add_doings(flow_t *flow) {
     for (size_t i = 0; i < figures->doing_count; ++i) {
         const wh_flow_doing_t *doing = &figures->doings[i];
         const wh_flow_station_t *of = &figures->tool->stations[doing->station];
+        if (doing->kind == WH_FLOW_EVENT_COMES || doing->kind == WH_FLOW_EVENT_GOES) {
+            continue;
+        }
         const int look = doing->kind == WH_FLOW_EVENT_CLEAN  ? CLEAN
                          : doing->kind == WH_FLOW_EVENT_DOWN ? DOWN
                                                              : PUMP;

@@ -148,7 +148,8 @@ static void begin_row(wh_schedule_state_t *check, int32_t row) {
         [WH_SCHEDULE_PLACE] = begin_access,         [WH_SCHEDULE_SWAP] = begin_access,
         [WH_SCHEDULE_MOVE] = wh_check_robot_begins, [WH_SCHEDULE_PROCESS] = wh_check_begin_process,
         [WH_SCHEDULE_CLEAN] = wh_check_begin_clean, [WH_SCHEDULE_PUMP] = wh_check_begin_pump,
-        [WH_SCHEDULE_OPEN] = wh_check_begin_door,   [WH_SCHEDULE_CLOSE] = wh_check_begin_door};
+        [WH_SCHEDULE_OPEN] = wh_check_begin_door,   [WH_SCHEDULE_CLOSE] = wh_check_begin_door,
+        [WH_SCHEDULE_LEAVE] = wh_check_begin_leave};
     begins[wh_check_row(check, row)->action](check, row);
 }
 
@@ -171,7 +172,7 @@ static void end_row(wh_schedule_state_t *check, int32_t row) {
 /* ----------------------------------------------------------------------------------------------- instants */
 
 /* An instant, in this order. */
-enum { ENDS, IN_NO_TIME, BEGINS };
+enum { ENDS, LEAVES, COMES, IN_NO_TIME, BEGINS };
 
 typedef struct {
     int64_t us;
@@ -194,8 +195,9 @@ static size_t list_moments(const wh_schedule_t *schedule, moment_t moments[]) {
     for (int32_t i = 0; i < (int32_t)schedule->count; ++i) {
         const wh_schedule_row_t *row = &schedule->rows[i];
         const int64_t begin_us = row->begin_us + WH_SCHEDULE_INSTANT_US;
-        if (row->action == WH_SCHEDULE_START) {
-            moments[count++] = (moment_t){row->begin_us, i, ENDS};
+        if (wh_schedule_is_instant(row->action)) {
+            const bool leaves = row->action == WH_SCHEDULE_LEAVE;
+            moments[count++] = (moment_t){row->begin_us, i, leaves ? LEAVES : COMES};
         } else if (row->end_us <= begin_us) {
             moments[count++] = (moment_t){begin_us, i, IN_NO_TIME};
         } else {
@@ -254,8 +256,7 @@ static void go_in_no_time(wh_schedule_state_t *check, moment_t moments[], size_t
 static void go(wh_schedule_state_t *check, moment_t moments[], size_t count) {
     for (size_t i = 0; i < count;) {
         if (moments[i].phase != IN_NO_TIME) {
-            if (moments[i].phase == ENDS &&
-                wh_check_row(check, moments[i].row)->action != WH_SCHEDULE_START) {
+            if (moments[i].phase == ENDS) {
                 end_row(check, moments[i].row);
             } else {
                 begin_row(check, moments[i].row);

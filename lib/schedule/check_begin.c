@@ -45,6 +45,9 @@ static bool check_names(const wh_schedule_state_t *check, const wh_schedule_row_
     if (row->to != WH_FLOW_NONE && check->stations[row->to].tool == WH_FLOW_NONE) {
         return refuse_name(check, row, "to", schedule->stations.texts[row->to], "station");
     }
+    if (row->recipe > 0 && wh_check_recipe(check, row) == 0) {
+        return refuse_name(check, row, "value", schedule->recipes.texts[row->recipe - 1], "recipe");
+    }
     if (row->slot > check->tool->stations[station].slots) {
         (void)snprintf(check->report->message, sizeof check->report->message,
                        "%.200s:%zu: slot: %d (expected one of %s in the layout, 1 to %d)", schedule->path,
@@ -130,7 +133,7 @@ static void note_row(wh_schedule_state_t *check, int32_t row) {
     }
     check->stations[of->station].has_pumps |= of->action == WH_SCHEDULE_PUMP;
     check->stations[of->station].has_cleans |= of->action == WH_SCHEDULE_CLEAN;
-    if (of->action != WH_SCHEDULE_START && of->end_us > check->report->end_us) {
+    if (!wh_schedule_is_instant(of->action) && of->end_us > check->report->end_us) {
         check->report->end_us = of->end_us;
     }
 }

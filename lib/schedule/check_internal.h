@@ -25,6 +25,8 @@ typedef struct {
     int64_t done_us;           /* its process is over, as far as is known */
     int64_t processed_us;      /* of rows, in this stay */
     int64_t whole_us;          /* when they had lasted as long as the layout says; WH_FLOW_NEVER: not yet */
+    int32_t recipe;            /* the layout's number; 0: none */
+    int32_t stay_recipe;       /* that of this stay, as a row of its process says */
     int64_t around_us;         /* of done_us: a clean around it, which has no row */
     uint64_t routes;           /* by which it may go, by their bits */
     bool is_lost;              /* it left all routes; told once */
@@ -39,7 +41,8 @@ typedef struct {
     int64_t cleaned_us; /* the begin of its last clean; below 0: none */
     int64_t placing_us; /* the end of the last placing */
     int32_t clean_row, placing_row;
-    int32_t since; /* wafers since the last clean */
+    int32_t since;  /* wafers since the last clean */
+    int32_t recipe; /* of the wafer that lies there, or lay there last */
 } wh_check_place_t;
 
 typedef struct {
@@ -117,6 +120,9 @@ bool wh_check_is_early(wh_schedule_state_t *check, int rule, int32_t row, int64_
 /* The layout's station of a row's; null: there is no layout. */
 const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int32_t station);
 
+/* The layout's recipe that the row names; 0: none, or there is no layout. */
+int32_t wh_check_recipe(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
+
 /* The index of robot and station of a row in the layout's tables; only with a layout, and a robot. */
 size_t wh_check_pair(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
 
@@ -138,6 +144,7 @@ void wh_check_takes_aboard(wh_schedule_state_t *check, int32_t row, int32_t wafe
 /* -------------------------------------------------------------------- places: rules 3, 4, 5, 8, 9, 10, 16 */
 void wh_check_lay(wh_schedule_state_t *check, int32_t wafer, int32_t place);
 void wh_check_begin_start(wh_schedule_state_t *check, int32_t row);
+void wh_check_begin_leave(wh_schedule_state_t *check, int32_t row);
 void wh_check_begin_take(wh_schedule_state_t *check, int32_t row, int32_t wafer);
 void wh_check_end_take(wh_schedule_state_t *check, int32_t row, int32_t wafer);
 void wh_check_begin_put(wh_schedule_state_t *check, int32_t row, int32_t wafer, int32_t leaving);
@@ -166,6 +173,7 @@ wh_check_door_t *wh_check_door_of(const wh_schedule_state_t *check, const wh_sch
 /* ----------------------------------------------------------------------------------- routes: rules 15, 17 */
 void wh_check_set_out(wh_schedule_state_t *check, int32_t wafer, int32_t place);
 void wh_check_visit(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_finish_route(wh_schedule_state_t *check, int32_t wafer);
 void wh_check_finish_routes(wh_schedule_state_t *check);
 
 /* ------------------------------------------------------------------------------------- what was looked at */

@@ -94,7 +94,27 @@ void wh_check_begin_start(wh_schedule_state_t *check, int32_t row) {
     wafer->whole_us = WH_FLOW_NEVER;
     wafer->around_us = 0;
     wafer->row = row;
+    wafer->recipe = wafer->stay_recipe = wh_check_recipe(check, of);
     wh_check_set_out(check, of->wafer, of->place);
+}
+
+/* Its carrier takes the wafer away. It may come again. */
+void wh_check_begin_leave(wh_schedule_state_t *check, int32_t row) {
+    wh_check_text_t text, place;
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    wh_check_wafer_t *wafer = &check->wafers[of->wafer];
+    if (wafer->where != WH_CHECK_LIES || wafer->place != of->place) {
+        wh_check_found(check, WH_SCHEDULE_RULE_ABSENT, row, wafer->row,
+                       "wafer: %s (expected one that lies in %s: it %s)", name_of(check, of->wafer),
+                       wh_check_place_name(check, of->place, &place),
+                       wh_check_where(check, of->wafer, &text));
+    } else if (wafer->visits > 0) {
+        wh_check_finish_route(check, of->wafer);
+    }
+    detach(check, of->wafer);
+    wafer->row = wafer->process_row = WH_CHECK_NO_ROW;
+    wafer->visits = 0;
+    wafer->is_lost = false;
 }
 
 /* -------------------------------------------------------------------------------------------------- takes */
@@ -197,5 +217,6 @@ void wh_check_end_put(wh_schedule_state_t *check, int32_t row, int32_t number) {
     if (check->tool) {
         wafer->placed_us += check->tool->doors[wh_check_pair(check, of)].close_us;
     }
+    wafer->stay_recipe = check->places[of->place].recipe = wafer->recipe;
     wafer->done_us = wafer->placed_us + wh_check_process_us(check, number);
 }

@@ -112,16 +112,20 @@ static const char *find_last(const wh_schedule_state_t *check, const wh_check_wa
 }
 
 /* Rule 17. */
-void wh_check_finish_routes(wh_schedule_state_t *check) {
+void wh_check_finish_route(wh_schedule_state_t *check, int32_t number) {
     wh_check_text_t text;
+    const wh_check_wafer_t *wafer = &check->wafers[number];
+    const char *last = wafer->row == WH_CHECK_NO_ROW ? NULL : find_last(check, wafer);
+    if (last) {
+        wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
+                       "wafer: %s (expected %s at last: it %s)",
+                       wh_schedule_text(&check->schedule->wafers, number), last,
+                       wh_check_where(check, number, &text));
+    }
+}
+
+void wh_check_finish_routes(wh_schedule_state_t *check) {
     for (int32_t w = 0; w < (int32_t)check->schedule->wafers.count; ++w) {
-        const wh_check_wafer_t *wafer = &check->wafers[w];
-        const char *last = wafer->row == WH_CHECK_NO_ROW ? NULL : find_last(check, wafer);
-        if (last) {
-            wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
-                           "wafer: %s (expected %s at last: it %s)",
-                           wh_schedule_text(&check->schedule->wafers, w), last,
-                           wh_check_where(check, w, &text));
-        }
+        wh_check_finish_route(check, w);
     }
 }

@@ -6,8 +6,16 @@ static const char *name_of(const wh_schedule_state_t *check, int32_t wafer) {
 }
 
 /* The process of a route's step; in the route's last station, and behind it, there is none of its own. */
-static int64_t step_us(const wh_flow_route_t *route, int32_t visits, const wh_flow_station_t *station) {
-    return (size_t)visits < route->step_count ? wh_flow_step_us(&route->steps[visits], station) : 0;
+static int64_t step_us(const wh_flow_route_t *route, int32_t visits, const wh_flow_station_t *station,
+                       int32_t recipe) {
+    return (size_t)visits < route->step_count ? wh_flow_step_us(&route->steps[visits], station, recipe) : 0;
+}
+
+int32_t wh_check_recipe(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    return row->recipe == 0 || !check->tool
+               ? 0
+               : wh_flow_recipe_named(&check->tool->recipes,
+                                      wh_schedule_text(&check->schedule->recipes, row->recipe - 1));
 }
 
 /* The time for which the layout processes a wafer where it lies: of the shortest route that it may go. */
@@ -20,11 +28,11 @@ int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
     int64_t least_us = WH_FLOW_NEVER;
     for (size_t r = 0; r < check->tool->route_count && !wafer->is_lost; ++r) {
         if ((wafer->routes >> r & 1U) != 0) {
-            const int64_t us = step_us(&check->tool->routes[r], wafer->visits, station);
+            const int64_t us = step_us(&check->tool->routes[r], wafer->visits, station, wafer->stay_recipe);
             least_us = us < least_us ? us : least_us;
         }
     }
-    return least_us == WH_FLOW_NEVER ? station->process_us : least_us;
+    return least_us == WH_FLOW_NEVER ? wh_flow_treatment(station, wafer->stay_recipe).process_us : least_us;
 }
 
 /* ---------------------------------------------------------------------------------------------- processes */
@@ -70,6 +78,9 @@ void wh_check_begin_process(wh_schedule_state_t *check, int32_t row) {
         return;
     }
     const bool is_first = wafer->process_row == WH_CHECK_NO_ROW;
+    if (wh_check_recipe(check, of) > 0) {
+        wafer->stay_recipe = check->places[of->place].recipe = wh_check_recipe(check, of);
+    }
     wh_check_process_door(check, row, wafer);
     check_again(check, row, wafer, number);
     note_whole(check, of, wafer, number);
@@ -146,16 +157,16 @@ static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];
     if (!station || !station->cleans_full || wafer->visits == 0 ||
-        !wh_flow_is_clean_due(station, place->since)) {
+        !wh_flow_is_clean_due(station, place->recipe, place->since)) {
         return;
     }
+    const int32_t after = wh_flow_treatment(station, place->recipe).clean_after;
     place->since = -1; /* this wafer leaves behind it */
     if (check->stations[of->station].has_cleans) {
         if (place->cleaned_us < wafer->placed_us) {
             wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, WH_CHECK_NO_ROW,
                            "begin_s: %.10g (expected a clean before: one is due behind %d %s)",
-                           wh_check_seconds(of->begin_us), (int)station->clean_after,
-                           station->clean_after == 1 ? "wafer" : "wafers");
+                           wh_check_seconds(of->begin_us), (int)after, after == 1 ? "wafer" : "wafers");
         }
     } else {
         wafer->done_us += station->clean_us;
@@ -204,17 +215,17 @@ static int64_t clean_due_us(const wh_schedule_state_t *check, int32_t row, int32
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     const wh_check_place_t *place = &check->places[of->place];
-    if (!station->cleans_full && wh_flow_is_clean_due(station, place->since + leaving - 1)) {
+    if (!station->cleans_full && wh_flow_is_clean_due(station, place->recipe, place->since + leaving - 1)) {
         return place->empty_us;
     }
-    if (station->idle_us == WH_FLOW_NEVER || leaving > 0 || place->count > 0 ||
+    const int64_t idle_us = wh_flow_treatment(station, place->recipe).idle_us;
+    if (idle_us == WH_FLOW_NEVER || leaving > 0 || place->count > 0 ||
         (place->cleaned_us >= 0 && place->cleaned_us >= place->empty_us)) {
         return WH_FLOW_NEVER;
     }
     const int64_t begin_us = of->begin_us - check->tool->doors[wh_check_pair(check, of)].open_us;
-    return wh_check_is_behind(begin_us, place->empty_us + station->idle_us)
-               ? place->empty_us + station->idle_us
-               : WH_FLOW_NEVER;
+    return wh_check_is_behind(begin_us, place->empty_us + idle_us) ? place->empty_us + idle_us
+                                                                   : WH_FLOW_NEVER;
 }
 
 /* A wafer is placed there: no clean runs, and none that is due was left out. */

@@ -30,6 +30,7 @@ typedef struct {
     size_t *first;  /* by wafer, its first leg; one more at the end */
     size_t *done;   /* by wafer: legs so far */
     int64_t *comes_us;
+    int32_t *recipes;  /* by wafer: the tool's */
     int32_t *homes;    /* by wafer: a place of the tool, or WH_FLOW_NONE */
     int32_t *numbers;  /* by the schedule's wafer: the plan's, or WH_FLOW_NONE */
     int32_t *accesses; /* by station: rows so far that reach into it */
@@ -82,6 +83,7 @@ static void open_legs(maker_t *maker) {
     maker->first = wh_array_new(wafers + 2, sizeof *maker->first);
     maker->done = wh_array_new(wafers + 1, sizeof *maker->done);
     maker->comes_us = wh_array_new(wafers + 1, sizeof *maker->comes_us);
+    maker->recipes = wh_array_new(wafers + 1, sizeof *maker->recipes);
     maker->homes = wh_array_new(wafers + 1, sizeof *maker->homes);
     maker->numbers = wh_array_new(wafers + 1, sizeof *maker->numbers);
     maker->accesses = wh_array_new(maker->tool->station_count, sizeof *maker->accesses);
@@ -133,6 +135,10 @@ static void take_row(maker_t *maker, size_t number) {
     if (row->action == WH_SCHEDULE_START) {
         maker->homes[row->wafer] = place_of(maker, row);
         maker->comes_us[row->wafer] = row->begin_us;
+        maker->recipes[row->wafer] =
+            row->recipe == 0 ? 0
+                             : wh_flow_recipe_named(&maker->tool->recipes,
+                                                    maker->schedule->recipes.texts[row->recipe - 1]);
     }
     if (put_by(row) != WH_FLOW_NONE) {
         end_leg(maker, number, put_by(row));
@@ -173,7 +179,8 @@ static void find_processes(maker_t *maker, int32_t wafer) {
         for (size_t r = 0; r < maker->tool->route_count && leg->process_us == WH_FLOW_NONE; ++r) {
             const wh_flow_route_t *route = &maker->tool->routes[r];
             if (leads_along(maker, route, wafer, k)) {
-                const int64_t us = wh_flow_step_us(&route->steps[k + 1], &maker->tool->stations[station]);
+                const int64_t us = wh_flow_step_us(&route->steps[k + 1], &maker->tool->stations[station],
+                                                   maker->recipes[wafer]);
                 least_us = least_us == WH_FLOW_NONE || us < least_us ? us : least_us;
             }
         }
@@ -252,7 +259,8 @@ static bool add_wafers(maker_t *maker) {
                               .lot = (int32_t)i,
                               .home = maker->homes[w],
                               .back = place_of(maker, &maker->schedule->rows[last_leg(maker, w)->put_row]),
-                              .back_station = WH_FLOW_NONE};
+                              .back_station = WH_FLOW_NONE,
+                              .recipe = maker->recipes[w]};
         maker->numbers[w] = (int32_t)i;
         plan->lot_count = plan->wafer_count = i + 1;
     }
@@ -402,6 +410,7 @@ static void close_maker(maker_t *maker) {
     free(maker->first);
     free(maker->done);
     free(maker->comes_us);
+    free(maker->recipes);
     free(maker->homes);
     free(maker->numbers);
     free(maker->accesses);

@@ -127,7 +127,8 @@ static bool take_action(wh_schedule_reader_t *reader, const wh_schedule_cell_t *
         }
     }
     (void)snprintf(
-        expected, sizeof expected, "start, pick, place, swap, move, process, clean, pump, open or close%s",
+        expected, sizeof expected,
+        "start, pick, place, swap, move, process, clean, pump, open, close or leave%s",
         wh_text_did_you_mean(meant, "; ", "", wh_text_nearest(text, wh_schedule_words, WH_SCHEDULE_ACTIONS)));
     return refuse_cell(reader, WH_SCHEDULE_ACTION, cell, expected);
 }
@@ -153,6 +154,7 @@ static bool take_side(wh_schedule_reader_t *reader, const wh_schedule_cell_t *ce
 #define NEEDS(COLUMN) (1U << (COLUMN))
 static const unsigned needs[WH_SCHEDULE_ACTIONS] = {
     [WH_SCHEDULE_START] = NEEDS(WH_SCHEDULE_WAFER),
+    [WH_SCHEDULE_LEAVE] = NEEDS(WH_SCHEDULE_WAFER),
     [WH_SCHEDULE_PICK] = NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_WAFER),
     [WH_SCHEDULE_PLACE] = NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_WAFER),
     [WH_SCHEDULE_SWAP] = NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_WAFER) | NEEDS(WH_SCHEDULE_WAFER2),
@@ -184,7 +186,7 @@ static bool take_times(wh_schedule_reader_t *reader, const wh_schedule_cell_t ce
         return false;
     }
     row->end_us = row->begin_us;
-    if (is_empty(end) && row->action == WH_SCHEDULE_START) {
+    if (is_empty(end) && wh_schedule_is_instant(row->action)) {
         return true;
     }
     if (!take_time(reader, WH_SCHEDULE_END, end, 0, &row->end_us)) {
@@ -204,6 +206,17 @@ static bool take_names(wh_schedule_reader_t *reader, const wh_schedule_cell_t ce
            take_name(reader, WH_SCHEDULE_STATION, &cells[WH_SCHEDULE_STATION], &schedule->stations,
                      &row->station) &&
            take_name(reader, WH_SCHEDULE_TO, &cells[WH_SCHEDULE_TO], &schedule->stations, &row->to);
+}
+
+/* `value`: a recipe's name, or a side. */
+static bool take_value(wh_schedule_reader_t *reader, const wh_schedule_cell_t *cell, wh_schedule_row_t *row) {
+    row->side = WH_FLOW_BOTH;
+    if (row->action != WH_SCHEDULE_START && row->action != WH_SCHEDULE_PROCESS) {
+        return take_side(reader, cell, &row->side);
+    }
+    const bool good = take_name(reader, WH_SCHEDULE_VALUE, cell, &reader->schedule->recipes, &row->recipe);
+    row->recipe += 1;
+    return good;
 }
 
 /* Cells that the action does not need are left aside, but for their names' being good ones. */
@@ -226,7 +239,7 @@ bool wh_schedule_add(wh_schedule_reader_t *reader, const wh_schedule_cell_t cell
         !take_names(reader, cells, &row) ||
         !take_whole(reader, WH_SCHEDULE_SLOT, &cells[WH_SCHEDULE_SLOT], WH_SCHEDULE_SLOTS, &row.slot) ||
         !take_whole(reader, WH_SCHEDULE_ARM, &cells[WH_SCHEDULE_ARM], 2, &row.arm) ||
-        !take_side(reader, &cells[WH_SCHEDULE_VALUE], &row.side)) {
+        !take_value(reader, &cells[WH_SCHEDULE_VALUE], &row)) {
         return false;
     }
     if (schedule->count == MOST_ROWS) {

@@ -7,7 +7,7 @@
 #include "../text/array.h"
 
 const char *const wh_schedule_words[WH_SCHEDULE_ACTIONS + 1] = {
-    "start", "pick", "place", "swap", "move", "process", "clean", "pump", "open", "close", NULL};
+    "start", "pick", "place", "swap", "move", "process", "clean", "pump", "open", "close", "leave", NULL};
 
 const char *const wh_schedule_columns[WH_SCHEDULE_COLUMNS + 1] = {
     "robot", "action", "wafer", "station", "slot", "begin_s", "end_s", "arm", "wafer2", "to", "value", NULL};
@@ -100,5 +100,6 @@ void wh_schedule_close(wh_schedule_t *schedule) {
     close_names(&schedule->robots);
     close_names(&schedule->wafers);
     close_names(&schedule->stations);
+    close_names(&schedule->recipes);
     memset(schedule, 0, sizeof *schedule);
 }

@@ -24,6 +24,7 @@ typedef enum {
     WH_SCHEDULE_PUMP, /* to the side that is its value */
     WH_SCHEDULE_OPEN,
     WH_SCHEDULE_CLOSE,
+    WH_SCHEDULE_LEAVE, /* the wafer is gone with its carrier from its begin on */
     WH_SCHEDULE_ACTIONS
 } wh_schedule_action_t;
 
@@ -56,7 +57,8 @@ typedef struct {
     int32_t slot;                              /* from 1 */
     int32_t arm;                               /* from 1; 0: not told */
     int32_t place;                             /* of station and slot; see wh_schedule_finish */
-    wh_flow_side_t side;                       /* of a pump or a door; WH_FLOW_BOTH: not told */
+    int32_t recipe;      /* of a start's wafer, or of a process: its name's number, from 1; 0: none */
+    wh_flow_side_t side; /* of a pump or a door; WH_FLOW_BOTH: not told */
 } wh_schedule_row_t;
 
 /* Names by number, and numbers by name. Zero it at the beginning. */
@@ -79,7 +81,7 @@ typedef struct {
     char *path;
     wh_schedule_row_t *rows;
     size_t count, capacity;
-    wh_schedule_names_t robots, wafers, stations;
+    wh_schedule_names_t robots, wafers, stations, recipes;
     wh_schedule_place_t *places; /* by station, then by slot */
     size_t place_count;
     bool ends_whole; /* the file's last line has a line end */
@@ -88,6 +90,11 @@ typedef struct {
 /* To be called once when all rows are there: numbers the places. Cost: a sort. */
 void wh_schedule_finish(wh_schedule_t *schedule);
 void wh_schedule_close(wh_schedule_t *schedule);
+
+/* True for a row that is an instant: it needs no end. */
+static inline bool wh_schedule_is_instant(wh_schedule_action_t action) {
+    return action == WH_SCHEDULE_START || action == WH_SCHEDULE_LEAVE;
+}
 
 /* True for what a robot does alone: pick, place, swap. */
 static inline bool wh_schedule_is_access(wh_schedule_action_t action) {

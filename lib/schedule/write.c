@@ -14,6 +14,7 @@ typedef struct {
     wh_schedule_action_t action;
     int32_t robot, arm, wafer, wafer2, station, slot, to;
     wh_flow_side_t side;
+    int32_t recipe; /* the tool's; 0: none */
 } line_t;
 
 typedef struct {
@@ -26,8 +27,8 @@ typedef struct {
 static line_t *add_line(lines_t *lines, wh_schedule_action_t action, int64_t begin_us, int64_t end_us) {
     lines->lines = wh_array_grow(lines->lines, lines->count, &lines->capacity, sizeof *lines->lines);
     line_t *line = &lines->lines[lines->count];
-    *line = (line_t){begin_us,     end_us,       lines->count, action,       WH_FLOW_NONE, 0,
-                     WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
+    *line = (line_t){begin_us,     end_us,       lines->count, action,       WH_FLOW_NONE, 0, WH_FLOW_NONE,
+                     WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH, 0};
     ++lines->count;
     return line;
 }
@@ -101,6 +102,7 @@ static void add_visit(lines_t *lines, const wh_flow_visit_t *visit, bool is_swap
     if (visit->process_us != WH_FLOW_NEVER && visit->done_us > visit->process_us) {
         line_t *line = add_line(lines, WH_SCHEDULE_PROCESS, visit->process_us, visit->done_us);
         line->wafer = visit->wafer;
+        line->recipe = wh_flow_recipe_of(lines->figures->plan, visit->wafer, visit->step);
         put_place(lines, line, visit->place);
     }
 }
@@ -139,6 +141,7 @@ static void add_starts(lines_t *lines) {
         if (figures->came_us[w] != WH_FLOW_NEVER) {
             line_t *line = add_line(lines, WH_SCHEDULE_START, figures->came_us[w], figures->came_us[w]);
             line->wafer = (int32_t)w;
+            line->recipe = figures->plan->wafers[w].recipe;
             put_place(lines, line, figures->plan->wafers[w].home);
         }
     }
@@ -171,6 +174,45 @@ static void add_doings(lines_t *lines) {
             line->side = figures->tool->sides[wh_flow_of(figures->tool, doing->robot, doing->station)];
         }
     }
+}
+
+/* Where the wafer lay at this time, before its carrier went: a place, or WH_FLOW_NONE. `is_past`: what came
+ * at this very time counts. */
+static int32_t lay_in(const wh_flow_figures_t *figures, int32_t wafer, int64_t at_us, bool is_past) {
+    int32_t place = WH_FLOW_NONE;
+    const int64_t came_us = figures->came_us[wafer];
+    if (came_us == WH_FLOW_NEVER || came_us > at_us || (came_us == at_us && !is_past)) {
+        return WH_FLOW_NONE;
+    }
+    place = figures->plan->wafers[wafer].home;
+    for (size_t i = 0; i < figures->visit_count; ++i) {
+        const wh_flow_visit_t *visit = &figures->visits[i];
+        if (visit->wafer == wafer && visit->picked_us <= at_us) {
+            place = visit->placed_us <= at_us ? visit->place : WH_FLOW_NONE;
+        }
+    }
+    return place;
+}
+
+/* The wafers that went with a carrier: none of them goes twice. */
+static void add_leaves(lines_t *lines) {
+    const wh_flow_figures_t *figures = lines->figures;
+    bool *is_gone = wh_array_new(figures->plan->wafer_count + 1, sizeof *is_gone);
+    for (size_t i = 0; i < figures->doing_count; ++i) {
+        const wh_flow_doing_t *doing = &figures->doings[i];
+        const bool goes = doing->kind == WH_FLOW_EVENT_GOES;
+        for (int32_t w = 0;
+             (goes || doing->kind == WH_FLOW_EVENT_COMES) && w < (int32_t)figures->plan->wafer_count; ++w) {
+            const int32_t place = is_gone[w] ? WH_FLOW_NONE : lay_in(figures, w, doing->end_us, goes);
+            if (place != WH_FLOW_NONE && figures->tool->place_stations[place] == doing->station) {
+                line_t *line = add_line(lines, WH_SCHEDULE_LEAVE, doing->end_us, doing->end_us);
+                line->wafer = w;
+                put_place(lines, line, place);
+                is_gone[w] = true;
+            }
+        }
+    }
+    free(is_gone);
 }
 
 /* ------------------------------------------------------------------------------------------------ writing */
@@ -234,7 +276,12 @@ static void write_line(const lines_t *lines, const line_t *line, FILE *out) {
     write_name(line->wafer2 == WH_FLOW_NONE ? "" : wafers[line->wafer2].name, out);
     fputc(',', out);
     write_name(line->to == WH_FLOW_NONE ? "" : tool->stations[line->to].name, out);
-    fprintf(out, ",%s\n", line->side == WH_FLOW_BOTH ? "" : wh_flow_side_words[line->side]);
+    fputc(',', out);
+    write_name(line->recipe > 0             ? tool->recipes.names[line->recipe - 1]
+               : line->side == WH_FLOW_BOTH ? ""
+                                            : wh_flow_side_words[line->side],
+               out);
+    fputc('\n', out);
 }
 
 bool wh_schedule_write(const wh_flow_figures_t *figures, FILE *out) {
@@ -243,6 +290,7 @@ bool wh_schedule_write(const wh_flow_figures_t *figures, FILE *out) {
     add_starts(&lines);
     add_visits(&lines);
     add_doings(&lines);
+    add_leaves(&lines);
     if (lines.count > 0) {
         qsort(lines.lines, lines.count, sizeof *lines.lines, by_begin);
     }

@@ -64,7 +64,7 @@ static void add_beam(list_t *list, const wh_layout_t *layout, size_t beam) {
 
 static void add_processes(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
     for (size_t s = 0; s < layout->station_count; ++s) {
-        if (layout->stations[s].times && layout->stations[s].times->of.process_us > 0) {
+        if (layout->stations[s].times && wh_flow_is_processing(&layout->stations[s].times->of)) {
             add(list, WH_CAUSE_PROCESS, s, 0, errors->process.width);
         }
     }

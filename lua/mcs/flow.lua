@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pcall, rawget, tostring, type = error, ipairs, math, pcall, rawget, tostring, type
 
-return function(native, tasks, commands, lookup, slot_map)
+return function(native, tasks, commands, lookup, slot_map, calls)
   local flows = {}
   -- A handler that always answers "retry" comes to an end.
   local most_retries = 100
@@ -84,6 +84,9 @@ return function(native, tasks, commands, lookup, slot_map)
       action.has_taken = holds_another(gripper)
       return action.has_taken and not native.sensor(gripper)
     end
+    if calls[action.what] then
+      return calls.is_done(action)
+    end
     return action.what == "place" and not action.is_placed and not native.sensor(gripper)
   end
 
@@ -151,7 +154,7 @@ return function(native, tasks, commands, lookup, slot_map)
   local function serve_robot(index, name)
     serve(native.take_action, function(action)
       action.robot = #native.layout.robots > 1 and name or nil
-      return carry_out(action, name, play[action.what])
+      return calls.await_open(action.station) and carry_out(action, name, play[action.what])
     end, native.end_action, index)
   end
 
@@ -183,6 +186,21 @@ return function(native, tasks, commands, lookup, slot_map)
     serve(native.take_work, function(what, degrees)
       return carry_out({ what = what, station = name, degrees = degrees }, nil, work[what])
     end, native.end_work, index)
+  end
+
+  -- Carriers that come with lots, and go when these are over.
+  local function serve_port(index, name)
+    serve(native.take_call, function(what, carrier)
+      local action = { what = what, station = name, carrier = carrier }
+      if not carry_out(action, nil, calls[what]) then
+        return false
+      end
+      local cause = what == "comes" and native.is_port_open(index) and calls.look(name, ask) or nil
+      if cause then
+        native.fail_flow(cause)
+      end
+      return not cause
+    end, native.end_call, index)
   end
 
   -- Plays the flow's present instant; the book of slots hears of the wafers that robots which are times alone have
@@ -249,6 +267,11 @@ return function(native, tasks, commands, lookup, slot_map)
       if station.chuck then
         add("the flow's " .. name, function()
           serve_work(index, name)
+        end)
+      end
+      if station.is_port then
+        add("the flow's carriers at " .. name, function()
+          serve_port(index, name)
         end)
       end
     end

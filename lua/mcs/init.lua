@@ -28,7 +28,8 @@ return function(native)
   local commands, queries = parts.commands, parts.queries
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
-  local flows = native.module("mcs/flow.lua")(native, parts.tasks, parts.commands, lookup, parts.slot_map)
+  local flows = native.module("mcs/flow.lua")(native, parts.tasks, parts.commands, lookup, parts.slot_map,
+    native.module("mcs/flow_ports.lua")(native, parts.tasks, parts.commands, parts.ports, parts.slot_map))
 
   -- cell "LAYOUT.lua", relative to the script: every slot must be in reach.
   local function cell(path)

@@ -91,7 +91,7 @@ return function(native, wh)
   ------------------------------------------------------------------------------------------------------- the whole
 
   local parts = { lookup = lookup, alarms = alarms, targets = targets, tasks = tasks, commands = commands, queries = queries,
-    own = own, finish = finish, slot_map = slot_map }
+    own = own, finish = finish, ports = ports, slot_map = slot_map }
 
   parts.reach = make("reach", native, tryout, make("flip_room", native, patterns, lookup, player, tryout))
 

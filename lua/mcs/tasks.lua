@@ -31,6 +31,8 @@ return function(native, lookup)
   local is_open = false   -- false: there are no tasks yet, and commands need not wait
   local held = {}      -- resource: the task whose command has it
   local keepers = {}      -- robot: the task whose command it executed last
+  local beside = {}       -- tasks that module.beside plays, and the one that waits for them
+  local is_ending = false -- the script itself is over, and waits for its tasks
   local requests = {}  -- of commands that wait for resources, in order
 
   local function switch(task)
@@ -455,18 +457,21 @@ return function(native, lookup)
   -- order. Raises the first error.
   function module.beside(list)
     local begun = {}
+    beside[current] = true
     if #tasks + #list > MOST then
       native.fail("BAD_ARGUMENT", ("%d tasks are needed (expected at most %d)"):format(#tasks + #list, MOST))
     end
     for place, entry in ipairs(list) do
       local task = module.begin(entry.body)
       task.name, task.line, begun[place] = entry.name, entry.line, task
+      beside[task] = true
     end
     wait_until(function()
       return module.all_over(begun)
     end, function()
       return "the end of " .. begun[1].name
     end)
+    beside = {}
     local failure
     for _, task in ipairs(begun) do
       if not task.results then
@@ -479,6 +484,15 @@ return function(native, lookup)
     end
   end
 
+  -- True if some task of the script goes on beside those that module.beside plays.
+  function module.may_others_act()
+    local may = not beside[script] and not is_ending
+    for _, task in ipairs(tasks) do
+      may = may or not beside[task]
+    end
+    return may
+  end
+
   -- Raises the error of the first task that failed, if no task has got it.
   function module.raise_failed()
     if failed[1] then
@@ -489,6 +503,7 @@ return function(native, lookup)
   -- The running task waits until all others are over. False if there never was one.
   function module.wait_for_all()
     if is_open then
+      is_ending = true
       native.begin_word("the script's end")
       wait_idle(function()
         return #tasks == 0

@@ -33,12 +33,20 @@ def served_by(tool, station):
             yield f"{robot} = {lua(fields)}"
 
 
+def port_of(station):
+    """A port's steps, whose sums are what the model has."""
+    port = station.get("port")
+    return port and {"state": "absent" if port.get("absent") else None, "place": seconds(port["comes"] // 3), "clamp": seconds(port["comes"] - port["comes"] // 3),
+                     "dock": 0, "open": 0, "map": 0, "remove": seconds(port["goes"] // 3), "unclamp": seconds(port["goes"] - port["goes"] // 3)}
+
+
 def station_text(tool, station):
     clean, ways = station.get("clean"), station.get("ways") or {}
     fields = {"slots": station.get("slots", 1), "process": seconds(station.get("process")), "window": seconds(station.get("window")),
               "kind": "load_port" if station.get("load_port") else None, "pump": seconds(station.get("pump")),
               "state": station["state"] if station.get("pump") else None,
               "into": [slot for slot, way in ways.items() if way == "in"] or None, "out": [slot for slot, way in ways.items() if way == "out"] or None,
+              "port": port_of(station),
               "clean": clean and {"after": clean.get("after"), "seconds": seconds(clean["seconds"]), "empty": clean.get("empty", True),
                                   "idle": seconds(clean.get("idle"))}}
     return f"{station['name']} = {lua(fields)[:-2]}, by = {{ {', '.join(served_by(tool, station))} }} }},"
@@ -53,7 +61,7 @@ def lot_text(number, lot, names):
     station, slots = lot["wafers"][0][1], [slot for _, _, slot in lot["wafers"]]
     assert slots == list(range(slots[0], slots[0] + len(slots)))
     names.update({name: f"L{number}.{index}" for index, (name, _, _) in enumerate(lot["wafers"], 1)})
-    return lua({"name": f"L{number}", "wafers": [station, slots[0], slots[-1]], "route": lot["route"], "arrives": seconds(lot.get("arrives") or None),
+    return lua({"name": f"L{number}", "recipe": lot.get("recipes"), "wafers": [station, slots[0], slots[-1]], "route": lot["route"], "arrives": seconds(lot.get("arrives") or None),
                 "priority": lot.get("priority") or None, "back": lot.get("back"), "dummy": lot.get("dummy") or None}) + ","
 
 

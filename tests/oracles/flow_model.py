@@ -11,11 +11,13 @@ All times are whole microseconds. A tool is
                    "clean": None | {"after": k or None, "seconds", "empty": True, "idle": None},
                    "pump": None | {"down", "up", "empty_down", "empty_up"}, "state": "vacuum" | "atmosphere",
                    "sides": {robot: "vacuum" | "atmosphere"}, "ways": {slot: "in" | "out"},
-                   "doors": None | {robot: {"open", "close"}}, "load_port": False}]}
-pick and place are a number or {station: number}, move a number or {(from, to): number}, swap None, a number or {station: number}.
+                   "doors": None | {robot: {"open", "close"}}, "load_port": False,
+                   "port": None | {"comes", "goes", "absent": False}}]}
+process, after and idle are a number or {recipe: number} with "default". pick and place are a number or {station: number}, move a number or {(from, to): number}, swap None, a number or {station: number}.
 A flow is
-    {"lots":   [{"name", "wafers": [(name, station, slot), ...], "route", "arrives": 0, "priority": 0, "back": None, "dummy": False}],
-     "routes": {name: {"steps": [{"stations": [...], "process": None, "hot": False}], "partial": {step: places kept empty}}},
+    {"lots":   [{"name", "wafers": [(name, station, slot), ...], "route", "arrives": 0, "priority": 0, "back": None, "dummy": False,
+                 "recipes": {slot: recipe}}],
+     "routes": {name: {"steps": [{"stations": [...], "process": None, "hot": False, "recipe": None}], "partial": {step: places kept empty}}},
      "rule":   "backward" | "swap" | "first_come" | "longest_wait" | {"order": {robot: [action, ...]}} | function(view, robot),
      "until": None, "down": [{"station", "at", "seconds": None for ever}], "takt": 0, "safe": True}
 An action is (from, to), (from, to, wafer), (from, "keep"), ("keep", to), ("keep", to, wafer) or ("pump", station, state). A result is
@@ -26,10 +28,11 @@ and a row is (robot, arm, from station, from slot, pick begin, pick end, to stat
 process end)."""
 import sys
 
+import flow_calls
 import flow_figures
 import flow_locks
 import flow_orders
-from flow_parts import Refused, Robot, Station, Wafer
+from flow_parts import Refused, Robot, Station, Wafer, by_recipe
 from flow_rules import SHIPPED
 
 
@@ -57,25 +60,27 @@ class Model:
 
     def read_lots(self):
         lots = sorted(enumerate(self.flow["lots"]), key=lambda pair: (pair[1].get("arrives", 0), -pair[1].get("priority", 0), pair[0]))
-        self.ahead = [lot for _, lot in lots]   # they come one after another
-        for lot in self.ahead:
+        ordered = [lot for _, lot in lots]
+        for lot in ordered:
             for name, station, slot in lot["wafers"]:
                 self.wafers.append(Wafer(name, lot, len(self.wafers), self.stations[station].places[slot - 1]))
             self.instants.add(lot.get("arrives", 0))
+        self.ahead = [lot for lot in ordered if not self.stations[lot["wafers"][0][1]].port]   # they come one after another
+        self.calls = flow_calls.Calls(self, [lot for lot in ordered if lot not in self.ahead])
         for lot in self.flow["lots"]:
             if lot["route"] not in self.routes:
                 self.routes.append(lot["route"])
         for wafer in self.wafers:
-            wafer.steps = [([wafer.home], 0, False), *map(self.read_step, self.flow["routes"][wafer.route]["steps"])]
+            wafer.steps = [([wafer.home], 0, False, None), *map(self.read_step, self.flow["routes"][wafer.route]["steps"])]
             back = wafer.lot.get("back")
             if back and {place.station.name for place in wafer.steps[-1][0]} == {back}:
                 wafer.steps.pop()
             if back:
-                wafer.steps.append(([self.stations[back].places[wafer.home.slot - 1]], 0, False))
+                wafer.steps.append(([self.stations[back].places[wafer.home.slot - 1]], 0, False, None))
 
     def read_step(self, step):
         places = [place for name in step["stations"] for place in self.stations[name].places]
-        return places, step.get("process"), step.get("hot", False)
+        return places, step.get("process"), step.get("hot", False), step.get("recipe")
 
     # ----------------------------------------------------------------------------------------------------------- steps
     def following(self, wafer, number, here=None):
@@ -122,7 +127,7 @@ class Model:
     def clean_due(self, place):
         """The wafer that leaves now leaves it to be cleaned."""
         clean = place.station.clean
-        return bool(clean and clean.get("empty", True) and clean.get("after") and place.count + 1 >= clean["after"])
+        return bool(clean and clean.get("empty", True) and clean.get("after") and place.count + 1 >= by_recipe(clean["after"], place.recipe))
 
     def placing_from(self, robot, place, arrival):
         """When placing can begin, as far as anybody knows; None if nobody does."""
@@ -150,8 +155,9 @@ class Model:
 
     # ---------------------------------------------------------------------------------------------------- destinations
     def may_enter(self, robot, place, wafer):
-        """It serves the place, its slot is for this way, nobody else is under way to it, and it is not down."""
-        return self.enters(robot, place) and place.coming in (None, wafer) and not place.station.down_at(self.now)
+        """It serves the place, its slot is for this way, nobody else is under way to it, and it is neither down nor a shut port."""
+        open_now = not place.station.down_at(self.now) and not self.calls.shut(place.station)
+        return self.enters(robot, place) and place.coming in (None, wafer) and open_now
 
     def enters(self, robot, place):
         way = place.station.ways.get(place.slot)
@@ -218,7 +224,7 @@ class Model:
 
     def free(self, robot, station):
         """Pick, place or swap may begin there now, the place itself apart."""
-        return robot.at == station.name and station.busy_until <= self.now and not station.down_at(self.now) and (
+        return robot.at == station.name and station.busy_until <= self.now and not station.down_at(self.now) and not self.calls.shut(station) and (
             self.pressure_from(station, robot) == self.now and not station.turning)
 
     def start_row(self, robot, wafer, arm, place, begin, end):
@@ -263,19 +269,19 @@ class Model:
     def put(self, robot, wafer, place, begin, end, shut):
         """What its placing will have done: known as soon as it has begun."""
         number = wafer.toward
-        process = wafer.steps[number][1]
-        process = place.station.process or 0 if process is None else process
+        process, recipe = wafer.steps[number][1], wafer.steps[number][3] or wafer.recipe
+        process = by_recipe(place.station.process, recipe) or 0 if process is None else process
         ready = place.station.up_from(shut)
         wafer.rows[-1][6:] = [place.station.name, place.slot, begin, end, ready, None if ready is None else ready + process]
         wafer.done = None if ready is None else ready + process
         clean = place.station.clean
-        if clean and not clean.get("empty", True) and clean.get("after") and place.count + 1 >= clean["after"] and wafer.done is not None:
+        if clean and not clean.get("empty", True) and clean.get("after") and place.count + 1 >= by_recipe(clean["after"], recipe) and wafer.done is not None:
             self.cleans.append((place.station.name, place.slot, wafer.done, wafer.done + clean["seconds"]))
             wafer.done, place.count = wafer.done + clean["seconds"], -1
 
         def placed():
             robot.arms[robot.arms.index(wafer)] = None
-            wafer.place, place.wafer, place.coming = place, wafer, None
+            wafer.place, place.wafer, place.coming, place.recipe = place, wafer, None, recipe
             wafer.robot = wafer.toward = wafer.destination = wafer.kept = None
             wafer.step, wafer.entered, place.filling = number, end, False
             wafer.ended = self.following(wafer, number) is None
@@ -327,6 +333,8 @@ class Model:
                 finish, robot.doing = robot.doing[1], None
                 finish()
         self.end_routes()
+        while self.calls.go():
+            self.end_routes()
         while self.ahead and self.ahead[0].get("arrives", 0) <= self.now and self.may_come(self.ahead[0]):
             self.come(self.ahead.pop(0))
             self.end_routes()
@@ -356,6 +364,7 @@ class Model:
             if wafer.home.wafer:
                 wafer.home.wafer.place = None
             wafer.place, wafer.home.wafer, wafer.entered, wafer.done = wafer.home, wafer, self.now, self.now
+            wafer.home.recipe = wafer.recipe
 
     def begin_all(self):
         """Cleans after idle time, and pumps; processes and cleans that are due were begun with what ended."""
@@ -373,7 +382,7 @@ class Model:
         """When a clean after idle time is due, None if none is: once for each stretch without a wafer."""
         if place.wafer or place.filling or place.idle_from is None or place.clean_end or not (place.station.clean or {}).get("idle"):
             return None
-        return place.station.up_from(place.idle_from + place.station.clean["idle"])
+        return place.station.up_from(place.idle_from + by_recipe(place.station.clean["idle"], place.recipe))
 
     def ask_all(self):
         begun = True

@@ -5,6 +5,11 @@ class Refused(Exception):
     """An answer that can never begin, or a description that makes no sense."""
 
 
+def by_recipe(value, recipe):
+    """A number, or that of the recipe, or else of "default"."""
+    return value.get(recipe, value["default"]) if isinstance(value, dict) else value
+
+
 class Place:
     def __init__(self, station, slot):
         self.station, self.slot = station, slot
@@ -15,6 +20,7 @@ class Place:
         self.closing = 0        # how long its door shuts behind that pick
         self.empty_since = 0
         self.count = 0          # wafers since the last clean
+        self.recipe = None      # of the wafer that lies here, or lay here last
         self.clean_end = None
         self.idle_from = 0      # without a wafer since then; None: and cleaned
 
@@ -23,10 +29,11 @@ class Station:
     def __init__(self, given):
         self.name = given["name"]
         self.process, self.window = given.get("process"), given.get("window")
-        self.clean, self.pump = given.get("clean"), given.get("pump")
+        self.clean, self.pump, self.port = given.get("clean"), given.get("pump"), given.get("port")
         self.state = given.get("state", "atmosphere")
         self.sides, self.doors, self.ways = given.get("sides") or {}, given.get("doors") or {}, given.get("ways") or {}
         self.places = [Place(self, slot) for slot in range(1, given.get("slots", 1) + 1)]
+        self.for_ends = False   # a port at which no lot begins: its carrier is changed when it is full
         self.busy_until = 0     # end of the pick, place or swap, its door shut
         self.turning = None     # (state, end)
         self.down = []          # (begin, end), end None for ever
@@ -93,7 +100,8 @@ class Wafer:
     def __init__(self, name, lot, order, place):
         self.name, self.lot, self.order, self.home = name, lot, order, place
         self.route = lot["route"]
-        self.steps = None       # of each step its places, process and hot
+        self.recipe = (lot.get("recipes") or {}).get(place.slot)
+        self.steps = None       # of each step its places, process, hot and recipe
         self.step = 0           # the step in whose place it lies or lay last
         self.place = None       # where it lies, until the end of the pick
         self.toward = None      # the step to which a transfer has begun

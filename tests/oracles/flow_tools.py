@@ -14,7 +14,8 @@ LEVELS = ("one robot, one lot, single places", "parallel places, slots, times by
           "several robots and shared buffers", "re-entrant and mixed routes, lots that arrive, priorities, back", "doors and locks with pumps",
           "stations that are down", "lists drawn at random, safe = false", "all together",
           "all together in whole seconds: much happens at one instant", "the same tools with a second lock beside each, and not safe",
-          "the tools of level 10 with parallel steps that share stations", "and lots that come into slots of lots that are not over")
+          "the tools of level 10 with parallel steps that share stations", "and lots that come into slots of lots that are not over",
+          "processes and cleans by recipe", "and carriers that take time to come and to go")
 RULES = ("backward", "first_come", "longest_wait", "swap")
 
 
@@ -56,6 +57,10 @@ class Maker:
             self.heat()
         if 8 <= self.level < 12 and self.draw.random() < (1.0 if self.level == 8 else 0.4):
             self.lists(flow)
+        if self.level > 13:
+            self.recipes()
+        if self.level > 14:
+            self.carriers()
         if self.level == 11 and isinstance(flow["rule"], str):
             self.pair_locks()
             flow["safe"], flow["until"] = False, 3000 * 1000 * MS
@@ -73,6 +78,44 @@ class Maker:
             for field in ("pick", "place", "move", "swap"):
                 if isinstance(robot.get(field), dict):
                     robot[field] = next(iter(robot[field].values()))
+
+    def by_recipe(self, value):
+        """The number, or a table with it and others."""
+        if value is None or self.draw.random() < 0.3:
+            return value
+        table = {"default": value}
+        for recipe in self.draw.sample(("oxide", "nitride"), self.draw.randint(1, 2)):
+            table[recipe] = max(1, value + self.draw.choice((-1, 1, 2))) if value < MS else self.time(5, 90)
+        return table
+
+    def recipes(self):
+        for station in self.tool["stations"]:
+            if station["process"] is not None:
+                station["process"] = self.by_recipe(station["process"])
+                for field in ("after", "idle"):
+                    if station.get("clean") and station["clean"].get(field):
+                        station["clean"][field] = self.by_recipe(station["clean"][field])
+        tables = {station["name"]: [value for value in (station["process"], *(station.get("clean") or {}).values()) if isinstance(value, dict)]
+                  for station in self.tool["stations"]}
+        known = sorted({recipe for found in tables.values() for table in found for recipe in table} - {"default"})
+        for route in self.routes.values():
+            for step in route["steps"]:
+                if known and not step.get("process") and self.draw.random() < 0.2 and any(tables[name] for name in step["stations"]):
+                    step["recipe"] = self.draw.choice(known)
+        for lot in self.lots:
+            names = [name for step in self.routes[lot["route"]]["steps"] for name in step["stations"]]
+            if known and any(tables[name] for name in names):
+                one = self.draw.choice(known)
+                lot["recipes"] = {slot: one if self.draw.random() < 0.7 else self.draw.choice(known) for _, _, slot in lot["wafers"]}
+
+    def carriers(self):
+        for station in self.tool["stations"]:
+            if station.get("load_port"):
+                station["port"] = {"comes": self.time(3, 30), "goes": self.time(3, 20)}
+                if station["name"] == "LP1" and self.draw.random() < 0.4:
+                    station["port"]["absent"] = True
+                if station["name"] == "LP2":
+                    station["slots"] = self.draw.choice((2, 4, 25))
 
     def station(self, name, **fields):
         self.tool["stations"].append({"name": name, "slots": 1, "process": None, **fields})
@@ -279,9 +322,9 @@ def seconds(value):
 
 
 def script_step(step):
-    if len(step["stations"]) == 1 and not step.get("process") and not step.get("hot"):
+    if len(step["stations"]) == 1 and not any(map(step.get, ("process", "hot", "recipe"))):
         return lua(step["stations"][0])
-    fields = {"process": seconds(step.get("process")), "hot": step.get("hot") or None}
+    fields = {"process": seconds(step.get("process")), "hot": step.get("hot") or None, "recipe": step.get("recipe")}
     named = [f"{key} = {lua(value)}" for key, value in fields.items() if value is not None]
     return "{ " + ", ".join([*map(lua, step["stations"]), *named]) + " }"
 
