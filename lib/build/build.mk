@@ -94,7 +94,7 @@ package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>
 LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 # liburdfdom's pkg-config file may name /usr/include itself; this folder has to stay behind C++'s own folders.
 URDF_FLAGS := $(patsubst -I%,-idirafter %,$(shell $(PKG_CONFIG) --cflags urdfdom tinyxml qhull_r 2>/dev/null))
-PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols libedit zlib libzstd) $(URDF_FLAGS)
+PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson libedit zlib libzstd) $(URDF_FLAGS)
 # Eigen without its heap, which no matrix of ours needs. Code that throws or asks for C++'s own library is left out, so C can
 # link it.
 PROGRAM_CXX_FLAGS := -std=c++17 -fno-exceptions -fno-rtti $(BASE) $(NUMBER_WARNINGS) -DEIGEN_NO_MALLOC -DEIGEN_MPL2_ONLY $(call package_flags,eigen3)
@@ -116,7 +116,7 @@ URDF_LIBS = -Wl,--as-needed $(shell $(PKG_CONFIG) --libs urdfdom tinyxml qhull_r
 # LCM's pkg-config file asks for GLib's headers, which LCM's own do not need: hence -llcm. It stands before libwaferhand.a,
 # which it uses.
 COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed
-PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit zlib libzstd $(PAGE)) $(URDF_LIBS) -llcm -ldl -lpthread -lm
+PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson libedit zlib libzstd $(PAGE)) $(URDF_LIBS) -llcm -ldl -lpthread -lm
 
 # This file is written only when its text changes. Whatever depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(CPPFLAGS) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
@@ -217,7 +217,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(foreach room,wire link log host loop view study report print app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
+$(filter $(foreach room,wire link log host loop view study report print play app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
@@ -333,4 +333,4 @@ $(B)/waferhand.1: lib/build/waferhand.1.in lib/math/status.def lib/math/config.h
 	@sed -n 's/^WH_STATUS(\([1-9][0-9]*\), \([A-Z_]*\), "\(.*\)")$$/.TP\n.B \1 \2\n\3/p' lib/math/status.def >$@.errors
 	@sed -e 's/@version@/$(VERSION)/' -e '/@errors@/{r $@.errors' -e 'd}' -e '/@exits@/{r $@.exits' -e 'd}' lib/build/waferhand.1.in >$@
 
-include lib/build/install.mk tests/check/check.mk tests/fuzz/fuzz.mk tests/bench/bench.mk
+include lib/build/install.mk tests/check/check.mk tests/fuzz/fuzz.mk tests/bench/bench.mk lib/build/playground.mk

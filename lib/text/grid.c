@@ -1,6 +1,5 @@
 #include "grid.h"
 
-#include <libsmartcols.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -268,66 +267,61 @@ static bool row_speaks(const wh_grid_t *grid, const part_t *part, size_t row) {
     return false;
 }
 
-static void add_headings(const wh_grid_t *grid, const part_t *part, struct libscols_table *table) {
-    const char *bold = wh_style_ink(&grid->style, WH_INK_BOLD);
-    for (size_t i = 0; i < part->count; ++i) {
-        const wh_grid_column_t *column = &grid->columns[part->columns[i]];
-        const int flags = column->to_right ? SCOLS_FL_RIGHT : 0;
-        struct libscols_column *added =
-            wh_memory_need(scols_table_new_column(table, column->heading, 0, flags));
-        if (bold) {
-            (void)scols_cell_set_color(scols_column_get_header(added), bold);
-        }
+/* The cell of a column in a row; row `row_count` is the heading. */
+static wh_grid_cell_t cell_of(const wh_grid_t *grid, size_t column, size_t row) {
+    if (row < grid->row_count) {
+        return grid->cells[row * grid->column_count + column];
     }
+    return (wh_grid_cell_t){.text = grid->columns[column].heading, .ink = WH_INK_BOLD};
 }
 
-static void add_line(const wh_grid_t *grid, const part_t *part, size_t row, struct libscols_table *table) {
-    struct libscols_line *line = wh_memory_need(scols_table_new_line(table, NULL));
-    for (size_t i = 0; i < part->count; ++i) {
-        const wh_grid_cell_t *cell = &grid->cells[row * grid->column_count + part->columns[i]];
-        const char *ink = wh_style_ink(&grid->style, cell->ink);
-        if (cell->text && scols_line_set_data(line, i, cell->text) != 0) {
-            wh_memory_out();
-        }
-        if (cell->text && ink) {
-            (void)scols_cell_set_color(scols_line_get_cell(line, i), ink);
-        }
+/* The columns of the terminal that a column's widest cell takes in this part. */
+static size_t width_in(const wh_grid_t *grid, const part_t *part, size_t column) {
+    size_t width = wh_style_columns(grid->columns[column].heading);
+    for (size_t row = 0; row < grid->row_count; ++row) {
+        const char *text = grid->cells[row * grid->column_count + column].text;
+        const size_t taken = text && row_speaks(grid, part, row) ? wh_style_columns(text) : 0;
+        width = taken > width ? taken : width;
     }
+    return width;
 }
 
-/* Prints lines without their trailing blanks. */
-static void print_trimmed(const char *text, FILE *out) {
-    while (*text != '\0') {
-        const size_t length = strcspn(text, "\n");
-        size_t end = length;
-        while (end > 0 && text[end - 1] == ' ') {
-            --end;
+/* Prints a row without blanks at its end: those before a cell wait until there is a cell. */
+static void print_row(const wh_grid_t *grid, const part_t *part, const size_t *widths, size_t row,
+                      FILE *out) {
+    size_t blanks = 0;
+    for (size_t i = 0; i < part->count; ++i) {
+        const wh_grid_cell_t cell = cell_of(grid, part->columns[i], row);
+        const char *text = cell.text ? cell.text : "";
+        const size_t room = widths[i] - wh_style_columns(text);
+        const size_t left = grid->columns[part->columns[i]].to_right ? room : 0;
+        if (text[0] != '\0') {
+            (void)fprintf(out, "%*s", (int)(blanks + left), "");
+            wh_style_print(&grid->style, out, cell.ink, "%s", text);
+            blanks = room - left;
+        } else {
+            blanks += room;
         }
-        fwrite(text, 1, end, out);
-        fputc('\n', out);
-        text += length + (text[length] == '\n');
+        blanks += strlen(SEPARATOR);
     }
+    fputc('\n', out);
 }
 
 static void print_part(const wh_grid_t *grid, const part_t *part, FILE *out) {
-    struct libscols_table *table = wh_memory_need(scols_new_table());
-    char *text = NULL;
-    scols_table_enable_noencoding(table, 1);
-    scols_table_enable_colors(table, grid->style.colour);
-    scols_table_set_termforce(table, SCOLS_TERMFORCE_NEVER);
-    (void)scols_table_set_column_separator(table, SEPARATOR);
-    add_headings(grid, part, table);
+    size_t widths[WH_GRID_COLUMNS];
+    bool has_heading = false;
+    for (size_t i = 0; i < part->count; ++i) {
+        widths[i] = width_in(grid, part, part->columns[i]);
+    }
     for (size_t row = 0; row < grid->row_count; ++row) {
         if (row_speaks(grid, part, row)) {
-            add_line(grid, part, row, table);
+            if (!has_heading) {
+                print_row(grid, part, widths, grid->row_count, out);
+                has_heading = true;
+            }
+            print_row(grid, part, widths, row, out);
         }
     }
-    if (scols_print_table_to_string(table, &text) != 0) {
-        wh_memory_out();
-    }
-    print_trimmed(text ? text : "", out);
-    free(text);
-    scols_unref_table(table);
 }
 
 void wh_grid_print(wh_grid_t *grid, FILE *out) {

@@ -1,4 +1,4 @@
-/* A table of text and numbers for the terminal, printed by libsmartcols.
+/* A table of text and numbers for the terminal.
  *
  * Set columns first, then rows, then print. Numbers of a column share their decimals, so that they line up
  * on the point; the column's rule sets the number of decimals. Nothing is cut off. A table wider than the
