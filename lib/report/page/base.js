@@ -1,5 +1,6 @@
-/* The page's one global name, and the small helpers that every part uses. */
-window.Waferhand = {};
+/* The page's one global name, and the small helpers that every part uses. A page that is given another document begins anew (see
+ * given.js): what it keeps of itself is in `kept`. */
+window.Waferhand = { kept: (window.Waferhand || { kept: {} }).kept };
 (function (W) {
     'use strict';
 
@@ -93,5 +94,28 @@ window.Waferhand = {};
         document.getElementById('said').textContent = text;
     }
 
-    Object.assign(W, { element, shape, icon, number, figure, tick, seconds, words, clamp, why, say, DASH });
+    /* Calls that end what must not outlive the document. */
+    const ends = [];
+    const atEnd = (what) => ends.push(what);
+
+    function end() {
+        W.isOver = true;
+        ends.splice(0).forEach((each) => each());
+    }
+
+    /* Listens at a place that outlives the document. */
+    function listen(target, kind, heard) {
+        target.addEventListener(kind, heard);
+        atEnd(() => target.removeEventListener(kind, heard));
+    }
+
+    /* Calls back when an element's size changes. */
+    function observe(seen, changed) {
+        const observer = new ResizeObserver(changed);
+        observer.observe(seen);
+        atEnd(() => observer.disconnect());
+    }
+
+    Object.assign(W, { atEnd, end, listen, observe, element, shape, icon, number, figure, tick, seconds, words, clamp, why, say,
+        DASH });
 }(window.Waferhand));

@@ -53,8 +53,9 @@
         controls.enableKeys = false;
         controls.enableZoom = false;
         controls.addEventListener('change', changed);
-        canvas.addEventListener('focus', () => { controls.enableZoom = true; });
-        canvas.addEventListener('blur', () => { controls.enableZoom = false; });
+        W.listen(canvas, 'focus', () => { controls.enableZoom = true; });
+        W.listen(canvas, 'blur', () => { controls.enableZoom = false; });
+        W.atEnd(() => controls.dispose());
         const rig = { camera, controls, view: 'whole', rider: null, moved: false };
         controls.addEventListener('start', () => { rig.moved = true; });
         rig.show = (view, rider) => show(rig, points, view, rider);

@@ -289,7 +289,7 @@
         view.pick = (event) => pick(view, event);
         view.panels = () => panels(view);
         view.still = () => { render(view); return canvas.toDataURL('image/png'); };
-        new ResizeObserver(view.resize).observe(host);
+        W.observe(host, view.resize);
         return view;
     }
 

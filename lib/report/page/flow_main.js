@@ -14,6 +14,9 @@
     }
 
     function show(doc) {
+        if (W.isOver) {
+            return;
+        }
         if (!doc) {
             host('head').append(W.why(`The document of this report cannot be read: ${W.fault}.`));
             performance.mark('complete');
@@ -31,6 +34,8 @@
         });
         W.keys.start();
         W.print.start();
+        W.given.seen();
+        W.given.shown();
         performance.mark('interactive');
         performance.mark('complete');
     }

@@ -77,7 +77,7 @@
                     + 'zoom once it has the focus. ' : '',
                 'In the plots: drag to zoom, click to go there, double click for the whole run.'),
                 W.element('button', { type: 'button', click: () => dialog.close() }, 'Close'));
-            document.addEventListener('keydown', pressed);
+            W.listen(document, 'keydown', pressed);
         },
     };
 

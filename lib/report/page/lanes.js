@@ -202,7 +202,7 @@
     function listen(chart) {
         let from = null;
         chart.canvas.addEventListener('pointerdown', (event) => { from = event; });
-        window.addEventListener('pointerup', (event) => {
+        W.listen(window, 'pointerup', (event) => {
             if (from && Math.abs(event.clientX - from.clientX) > 5) {
                 const times = [timeAt(chart, from), timeAt(chart, event)].sort((a, b) => a - b);
                 W.clock.setWindow(...times);
@@ -224,7 +224,7 @@
             + 'lie too close to be seen one by one.') };
         charts.push(chart);
         listen(chart);
-        new ResizeObserver(() => draw(chart)).observe(chart.canvas);
+        W.observe(chart.canvas, () => draw(chart));
         const readout = group.choose ? [W.hand.listen(chart, barAt, draw)] : [];
         return [W.element('div', { class: 'frame' }, chart.canvas, chart.cursor), ...readout, chart.banded];
     }

@@ -60,8 +60,8 @@
         }
     }
 
-    function restore() {
-        const found = new URLSearchParams(location.hash.slice(1));
+    link.restore = function (text) {
+        const found = new URLSearchParams(text);
         const [window_, t] = [numbers(found.get('window'), 2), numbers(found.get('t'), 1)];
         if (window_ && window_[0] < window_[1]) {
             W.clock.setWindow(...window_);
@@ -76,7 +76,9 @@
         if (W.stage.view && W.stage.view.cut) {
             W.section.restore(found.get('cut'));
         }
-    }
+    };
+
+    const restore = () => link.restore(location.hash.slice(1));
 
     /* Writes it into the address, and into the clipboard where the browser allows it. */
     link.take = function () {
@@ -94,7 +96,7 @@
 
     link.start = function () {
         restore();
-        window.addEventListener('hashchange', restore);
+        W.listen(window, 'hashchange', restore);
     };
 
     W.link = link;

@@ -39,10 +39,14 @@
         part(host('plots'), () => plots(doc));
         part(host('tables'), () => tables(doc));
         W.print.start();
+        W.given.shown();
         performance.mark('complete');
     }
 
     function show(doc) {
+        if (W.isOver) {
+            return;
+        }
         if (!doc) {
             host('head').append(W.why(`The document of this report cannot be read: ${W.fault}.`));
             performance.mark('complete');
@@ -68,8 +72,11 @@
             W.live.start(doc);
         }
         requestAnimationFrame(() => setTimeout(() => {
-            performance.mark('interactive');
-            rest(doc);
+            if (!W.isOver) {
+                performance.mark('interactive');
+                W.given.seen();
+                rest(doc);
+            }
         }, 0));
     }
 

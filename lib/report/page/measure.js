@@ -108,8 +108,8 @@
     function listen() {
         const canvas = W.stage.view.canvas;
         let from = null;
-        canvas.addEventListener('pointerdown', (event) => { from = [event.clientX, event.clientY]; });
-        canvas.addEventListener('click', (event) => {
+        W.listen(canvas, 'pointerdown', (event) => { from = [event.clientX, event.clientY]; });
+        W.listen(canvas, 'click', (event) => {
             measure.dragged = from && Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4;
             clicked(event);
         });

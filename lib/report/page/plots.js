@@ -234,7 +234,7 @@
         const due = plots.panels.filter((panel) => !panel.graph);
         due.slice(0, all ? due.length : 1).forEach(draw);
         if (due.length > 1 && !all) {
-            setTimeout(plots.fill, 0, false);
+            plots.later = setTimeout(plots.fill, 0, false);
         }
     };
 
@@ -252,14 +252,21 @@
         plots.panels.filter((panel) => panel.graph).forEach((panel) => panel.graph.updateOptions(looks(panel)));
     }
 
+    function end() {
+        clearTimeout(plots.later);
+        plots.seen.disconnect();
+        plots.panels.filter((panel) => panel.graph).forEach((panel) => panel.graph.destroy());
+    }
+
     plots.start = function (doc) {
         plots.doc = doc;
         plots.seen = new IntersectionObserver(observe, { rootMargin: '200px' });
+        W.atEnd(end);
         W.clock.on('time', () => plots.panels.forEach(follow));
         W.clock.on('window', () => plots.panels.forEach(refresh));
         W.clock.on('growth', () => plots.panels.forEach(refresh));
         W.theme.on(repaint);
-        window.addEventListener('resize', () => requestAnimationFrame(() => plots.panels.forEach(follow)));
+        W.listen(window, 'resize', () => requestAnimationFrame(() => plots.panels.forEach(follow)));
     };
 
     W.plots = plots;

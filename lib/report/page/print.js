@@ -39,8 +39,8 @@
 
     W.print = {
         start() {
-            window.addEventListener('beforeprint', before);
-            window.addEventListener('afterprint', after);
+            W.listen(window, 'beforeprint', before);
+            W.listen(window, 'afterprint', after);
         },
     };
 }(window.Waferhand));

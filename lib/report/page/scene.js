@@ -102,6 +102,9 @@
 
     /* Returns null without WebGL; it asks here, because three.js would print an error. The picture is kept for paper. */
     function renderer() {
+        if (W.kept.gl) {
+            return W.kept.gl;
+        }
         const canvas = W.element('canvas');
         const wanted = { antialias: true, alpha: false, preserveDrawingBuffer: true };
         const context = canvas.getContext('webgl', wanted) || canvas.getContext('experimental-webgl', wanted);
@@ -110,6 +113,7 @@
         }
         const made = new THREE.WebGLRenderer(Object.assign({ canvas, context }, wanted));
         made.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+        W.kept.gl = made;
         return made;
     }
 
@@ -159,11 +163,21 @@
         view.draw = () => draw(view);
         view.pick = (event) => pick(view, event);
         view.still = () => { render(view); return view.canvas.toDataURL('image/png'); };
-        new ResizeObserver(view.resize).observe(view.host);
+        W.observe(view.host, view.resize);
+        W.atEnd(() => free(view));
         resize(view);
         view.show('whole');
         paint(view);
         return view;
+    }
+
+    /* Frees what the scene has in the graphics' memory; the canvas and its programs stay. */
+    function free(view) {
+        view.isOver = true;
+        view.scene.traverse((child) => {
+            [child.geometry, child.material, child.shadow && child.shadow.map].filter(Boolean).forEach((each) => each.dispose());
+        });
+        view.gl.renderLists.dispose();
     }
 
     function pose(view, t) {
@@ -263,6 +277,9 @@
 
     function render(view) {
         view.due = false;
+        if (view.isOver) {
+            return;
+        }
         view.rig.ride();
         view.marks.update(view.at);
         layTrails(view);

@@ -6,7 +6,7 @@
     const system = window.matchMedia('(prefers-color-scheme: dark)');
     const listeners = [];
     let colours = {};
-    let chosen = null;
+    let chosen = W.kept.theme || null;
 
     /* A colour of the style sheet by its name, without the dashes. */
     function colour(name) {
@@ -27,14 +27,17 @@
 
     const wanted = () => chosen || (system.matches ? 'dark' : 'light');
 
-    function toggle() {
-        chosen = root.dataset.theme === 'dark' ? 'light' : 'dark';
-        show(chosen);
+    function choose(name) {
+        chosen = name;
+        W.kept.theme = name;
+        show(name);
     }
 
-    system.addEventListener('change', () => show(wanted()));
+    const toggle = () => choose(root.dataset.theme === 'dark' ? 'light' : 'dark');
+
+    W.listen(system, 'change', () => show(wanted()));
     show(wanted());
 
-    W.theme = { colour, series, toggle, show, restore: () => show(wanted()), on: (listener) => listeners.push(listener),
+    W.theme = { colour, series, choose, toggle, show, restore: () => show(wanted()), on: (listener) => listeners.push(listener),
         name: () => root.dataset.theme };
 }(window.Waferhand));

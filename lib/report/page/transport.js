@@ -103,7 +103,7 @@
         W.clock.on('play', showPlay);
         W.clock.on('growth', ticks);
         W.theme.on(ticks);
-        new ResizeObserver(ticks).observe(transport.ticks);
+        W.observe(transport.ticks, ticks);
         showTime(W.clock);
         showPlay(W.clock);
     };
