@@ -1,6 +1,7 @@
 /* waferhand run SCRIPT */
 #include <stdlib.h>
 
+#include "../play/run_document.h"
 #include "app.h"
 #include "broadcast.h"
 #include "connection.h"
@@ -165,7 +166,7 @@ static int run_published(arguments_t *arguments) {
 
 static bool open_page(arguments_t *arguments, char **command) {
     const bool is_named = arguments->page.address && arguments->run.run.script;
-    *command = is_named ? wh_run_command(&arguments->run, false) : NULL;
+    *command = is_named ? wh_run_command(wh_run_subcommand(&arguments->run), &arguments->run.run) : NULL;
     const wh_live_options_t wanted = {.speaker = "run",
                                       .title = arguments->run.run.script,
                                       .reproduce = *command,

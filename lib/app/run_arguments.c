@@ -8,14 +8,14 @@
 #include "../layout/axes.h"
 #include "../layout/grips.h"
 #include "../link/outputs.h"
+#include "../play/run_document.h"
+#include "../play/run_written.h"
 #include "../print/flow_history.h"
-#include "../report/page.h"
 #include "../report/plots.h"
 #include "../schedule/write.h"
 #include "../text/array.h"
 #include "../text/output.h"
 #include "../text/style.h"
-#include "../view/scene.h"
 #include "apart.h"
 #include "app.h"
 #include "segments.h"
@@ -92,27 +92,6 @@ bool wh_run_files_wanted(const wh_run_files_t *files) {
     return files->page || files->scene || files->document || files->plots;
 }
 
-/* ---------------------------------------------------------------------------------------------- listening */
-
-static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
-    if (state->status == WH_OK) {
-        wh_signals_slice(user, command->axes, command->axis_count, state);
-    }
-}
-
-static void on_boundary(void *user, const wh_layout_t *layout) {
-    wh_signals_t *signals = user;
-    if (!signals->layout) {
-        wh_signals_begin(signals, layout, true);
-    } else if (signals->last > 0) {
-        wh_signals_mark(signals);
-    }
-}
-
-wh_mcs_listener_t wh_run_listener(wh_signals_t *signals) {
-    return (wh_mcs_listener_t){.slice = on_slice, .boundary = on_boundary, .user = signals};
-}
-
 /* ------------------------------------------------------------------------------------------------- errors */
 
 const wh_option_t wh_run_error_options[] = {
@@ -177,58 +156,7 @@ static wh_mcs_count_t counts_of(const wh_run_counting_t *counting) {
     return !counting->counted ? WH_MCS_COUNT_NONE : counting->strict ? WH_MCS_COUNT_STRICT : WH_MCS_COUNT;
 }
 
-/* ------------------------------------------------------------------------------------------------ command */
-
-char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
-    const wh_script_run_options_t *run = &arguments->run;
-    const char *command = arguments->command ? arguments->command : "run";
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = wh_memory_need(open_memstream(&text, &size));
-    fprintf(out, "waferhand %s ", is_log ? "replay" : command);
-    wh_output_word(out, run->script);
-    for (size_t i = 0; i < run->parameter_count && !is_log; ++i) {
-        fputs(" --set ", out);
-        wh_output_word(out, run->parameters[i]);
-    }
-    for (size_t i = 0; i < run->error_count; ++i) {
-        fputs(" --error ", out);
-        wh_output_word(out, run->errors[i]);
-    }
-    if (run->counts != WH_MCS_COUNT_NONE) {
-        fputs(run->counts == WH_MCS_COUNT_STRICT ? " --counted --strict" : " --counted", out);
-    }
-    (void)fclose(out);
-    return text;
-}
-
 /* ------------------------------------------------------------------------------------------------ writing */
-
-typedef struct {
-    const wh_document_t *document;
-    char *text; /* the document's */
-    size_t size;
-    char message[WH_PAGE_MESSAGE_BYTES]; /* why a page was not written; empty: errno says it */
-} content_t;
-
-static bool write_page(void *user, FILE *out) {
-    content_t *content = user;
-    const char *page = content->document->signals ? WH_PAGE_REPORT : WH_PAGE_FLOW;
-    return wh_page_write(out, page, content->document->title, content->text, content->size, content->message);
-}
-
-static bool write_scene(void *user, FILE *out) {
-    const content_t *content = user;
-    json_t *scene = wh_scene_make(content->document->signals, content->document->title, true);
-    const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
-    json_decref(scene);
-    return written && fputc('\n', out) != EOF;
-}
-
-static bool write_document(void *user, FILE *out) {
-    const content_t *content = user;
-    return fwrite(content->text, 1, content->size, out) == content->size;
-}
 
 static bool write_plots(const wh_document_t *document, const char *folder) {
     char message[WH_PLOTS_MESSAGE_BYTES] = "";
@@ -257,31 +185,23 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
     return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
 }
 
+const char *wh_run_subcommand(const wh_run_arguments_t *arguments) {
+    return arguments->command ? arguments->command : "run";
+}
+
 bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t *document) {
     const wh_run_files_t *files = &arguments->files;
-    wh_document_t whole = *document;
-    content_t content = {.document = &whole};
+    const bool is_log = strcmp(document->source, "log") == 0;
+    wh_run_written_t whole;
     if (!wh_run_files_wanted(files)) {
         return true;
     }
-    FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
-    char *command = wh_run_command(arguments, strcmp(document->source, "log") == 0);
-    whole.title = arguments->run.script;
-    whole.reproduce = command;
-    whole.parameters = arguments->run.parameters;
-    whole.parameter_count = arguments->run.parameter_count;
-    whole.run = wh_record_to_json(document->record);
-    const bool made = wh_document_write(&whole, out) == 0;
-    if (fclose(out) != 0 || !made) {
-        wh_memory_out();
-    }
-    const bool written = wh_file_write("--data", files->document, write_document, &content, NULL) &&
-                         wh_file_write("--gltf", files->scene, write_scene, &content, NULL) &&
-                         wh_file_write("--report", files->page, write_page, &content, content.message) &&
-                         write_plots(&whole, files->plots);
-    free(content.text);
-    free(command);
-    json_decref(whole.run);
+    wh_run_written_open(&whole, document, &arguments->run, is_log ? "replay" : wh_run_subcommand(arguments));
+    const bool written = wh_file_write("--data", files->document, wh_run_written_document, &whole, NULL) &&
+                         wh_file_write("--gltf", files->scene, wh_run_written_scene, &whole, NULL) &&
+                         wh_file_write("--report", files->page, wh_run_written_page, &whole, whole.message) &&
+                         write_plots(&whole.document, files->plots);
+    wh_run_written_close(&whole);
     return written;
 }
 
@@ -298,38 +218,25 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
     return wh_record_print_table(record, stdout, &style, &arguments->sections);
 }
 
-/* Robots that are times alone have a page, too, if there was a flow. */
-static bool write_flow(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
-    const wh_document_t document = {.source = "run", .record = &run->record};
-    const char *expected = arguments->files.scene ? "robots with axes for --gltf: here they are times alone"
-                           : !run->record.flow || !run->record.flow->figures.tool
-                               ? "a flow: the robots are times alone"
-                               : NULL;
-    if (expected) {
-        fprintf(stderr, "%s: nothing to show (expected %s)\n", run->record.layout->path, expected);
-        return false;
-    }
-    return wh_run_files_write(arguments, &document);
-}
-
+/* Robots that are times alone have no scene. */
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                          wh_signals_t *signals) {
+    char message[WH_SANDBOX_MESSAGE_BYTES];
+    wh_document_t document;
+    const wh_layout_t *layout = run->record.layout;
     if (!wh_run_files_wanted(&arguments->files)) {
         return true;
     }
-    if (!run->record.layout) {
-        fprintf(stderr, "%s: no cell (expected a script that names a layout: there is nothing to show)\n",
-                arguments->run.script);
+    if (layout && layout->tool && arguments->files.scene) {
+        fprintf(stderr,
+                "%s: nothing to show (expected robots with axes for --gltf: here they are times alone)\n",
+                layout->path);
         return false;
     }
-    if (run->record.layout->tool) {
-        return write_flow(arguments, run);
+    if (!wh_run_document(run, arguments->run.script, signals, &document, message)) {
+        fprintf(stderr, "%s\n", message);
+        return false;
     }
-    if (!signals->layout) {
-        wh_signals_begin(signals, run->record.layout, true);
-    }
-    wh_signals_finish(signals);
-    const wh_document_t document = {.source = "run", .record = &run->record, .signals = signals};
     return wh_run_files_write(arguments, &document);
 }
 

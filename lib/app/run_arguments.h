@@ -22,9 +22,6 @@ extern const wh_option_t wh_run_files_options[];
 /* True if any is wanted. */
 bool wh_run_files_wanted(const wh_run_files_t *files);
 
-/* Fills the signals with each slice that motion control has played, and marks where a run begins anew. */
-wh_mcs_listener_t wh_run_listener(wh_signals_t *signals);
-
 /* Counted time; zero it to begin with. */
 typedef struct {
     bool counted, strict;
@@ -99,9 +96,8 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
  * does not take it. */
 int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
 
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
- * a log. */
-char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
+/* The subcommand that plays it again. */
+const char *wh_run_subcommand(const wh_run_arguments_t *arguments);
 
 /* Runs the script and prints its result. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../host/host.h"
+#include "../play/run_document.h"
 #include "../text/array.h"
 #include "../text/output.h"
 #include "apart.h"

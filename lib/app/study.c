@@ -1,6 +1,7 @@
 /* waferhand study SCRIPT */
 #include <stdlib.h>
 
+#include "../play/run_document.h"
 #include "../print/study_print.h"
 #include "../report/page.h"
 #include "../report/study_document.h"
@@ -128,7 +129,7 @@ static bool write_page(void *user, FILE *out) {
     result.worst = WH_STUDY_WORST;
     (void)snprintf(command, sizeof command, "study --seed %llu", (unsigned long long)result.study->seed);
     run.command = command;
-    char *again = wh_run_command(&run, false);
+    char *again = wh_run_command(wh_run_subcommand(&run), &run.run);
     const wh_study_document_t document = {result.study, result.tally, wh_study_to_json(&result), again};
     FILE *memory = wh_memory_need(open_memstream(&text, &size));
     const bool made = wh_study_document_write(&document, memory) == 0;

@@ -3,6 +3,8 @@
 LIBRARY_ROOMS := math grasp batch motion cell align sim
 # It uses libccd, and exists in double only.
 COLLISION_ROOM := collision
-HOST_ROOMS := text flow script schedule layout bodies reading record trial mcs survey wire link log host loop view study estimate report print app
+HOST_ROOMS := text flow script schedule layout bodies reading record trial mcs survey scene wire link log host loop view study estimate report print play app
 # Java, beside them: it uses the messages alone.
 SPY_ROOM := spy
+# The engine and the page of the playground, beside them: the program has neither.
+PLAYGROUND_ROOM := playground

@@ -50,7 +50,7 @@
  *                rim), residual (rho minus the circle's; null: no circle), counts (1; 0: not for the
  *                circle) }]
  *   scans_left_out   the number of further scans, more than a document holds
- *   scene        glTF 2.0 (view/scene.h), without animation
+ *   scene        glTF 2.0 (scene/scene.h), without animation
  *   now          only of a run that goes on: the last sample of each curve (report/tracks_document.h). Its
  *                source is "live"; thinning is null, as the curves are samples some 60 times a second;
  *                `run` has the lists alone

@@ -6,10 +6,10 @@
 
 #include "../layout/layout.h"
 #include "../record/quaternion.h"
+#include "../scene/mesh.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
 #include "../wire/messages.h"
-#include "mesh.h"
 
 #define M_PER_MM 1e-3
 

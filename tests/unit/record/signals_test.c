@@ -10,8 +10,8 @@
 #include "record/quaternion.h"
 #include "report/document.h"
 #include "report/gnuplot.h"
-#include "view/gltf.h"
-#include "view/scene.h"
+#include "scene/gltf.h"
+#include "scene/scene.h"
 
 /* A slice as it was. */
 typedef struct {

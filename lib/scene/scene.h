@@ -8,8 +8,8 @@
  * an animation "run" moves them, also wafers, to within 0.05 mm plus the error of the signals; links to
  * within 0.5 mm.
  */
-#ifndef WH_VIEW_SCENE_H
-#define WH_VIEW_SCENE_H
+#ifndef WH_SCENE_SCENE_H
+#define WH_SCENE_SCENE_H
 
 #include <jansson.h>
 

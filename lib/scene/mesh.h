@@ -2,8 +2,8 @@
  *
  * Host code: it ends the program if out of memory.
  */
-#ifndef WH_VIEW_MESH_H
-#define WH_VIEW_MESH_H
+#ifndef WH_SCENE_MESH_H
+#define WH_SCENE_MESH_H
 
 #include "../collision/convex.h"
 

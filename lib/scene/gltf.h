@@ -3,8 +3,8 @@
  *
  * Host code: it ends the program if out of memory.
  */
-#ifndef WH_VIEW_GLTF_H
-#define WH_VIEW_GLTF_H
+#ifndef WH_SCENE_GLTF_H
+#define WH_SCENE_GLTF_H
 
 #include <jansson.h>
 

@@ -2,7 +2,7 @@
 #include "support/support.h"
 
 #include "math/trig.h"
-#include "view/mesh.h"
+#include "scene/mesh.h"
 
 #define CORNERS 48
 
