@@ -7,7 +7,7 @@
 #   WITHOUT="sweep index"   the library has no swept checking, no index over the wafers, or neither
 #   SHARED=1   the shared libraries are installed, too
 #   COLLISION=1  install-library installs collision, too; it needs libccd
-#   FOR="run test"  whose packages `make deps` installs: run, page, test, check, bench, verify, manual, spy, view, browser
+#   FOR="run test"  whose packages `make deps` installs: run, page, test, check, bench, verify, manual, spy, view, browser, playground
 #   CCACHE=    does not use ccache, which is otherwise used if it is there
 #   WERROR=1   warnings are errors (always so if CI is set)
 #   V=1        shows the commands; 0 switches off what 1 switches on, and is the default
@@ -39,7 +39,7 @@ include lib/build/switches.mk tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz configurations
 PART := $(CORE_PARTS) board same_bits builds analysers wp random long hour long_counts coverage mutation host_mutation
 
-.PHONY: all deps library shared manual manual-tables install-library run spy view test quick bench check verify-core verify install uninstall clean help
+.PHONY: all deps library shared manual manual-tables install-library run spy playground view test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -63,6 +63,11 @@ spy: ## opens lcm-spy, with our messages decoded and a view of the proximity che
 	$(NEED) spy
 	$(BUILD) spy
 	@lib/spy/start build/spy/types.jar
+
+playground: ## build/playground.html: Waferhand in one page, without a server; about 5 minutes of emscripten the first time
+	$(NEED) run playground
+	$(BUILD) playground
+	@echo 'build/playground.html'
 
 view: all ## shows a cell live in a web browser: fetches Drake's viewer, says what to start beside it
 	$(NEED) run view

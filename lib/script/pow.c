@@ -4,7 +4,8 @@
  * asks for a fractional exponent is stopped at its next instruction. All other callers get the rounded
  * result of libm's powl; this library itself never calls pow.
  *
- * The program links liblua5.4.a statically. Build this file with -fno-builtin-pow.
+ * The program links liblua5.4.a statically. Build this file with -fno-builtin-pow. The linker of the
+ * playground hands each call of pow to __wrap_pow, for its C library's powl calls pow.
  */
 #include <float.h>
 #include <math.h>
@@ -74,6 +75,15 @@ static bool lua_asks(wh_sandbox_t *sandbox) {
     return true;
 }
 
+#if defined(__EMSCRIPTEN__)
+double __real_pow(double x, double y);
+double __wrap_pow(double x, double y);
+#define pow __wrap_pow
+#define ROUNDED_POWER(x, y) __real_pow(x, y)
+#else
+#define ROUNDED_POWER(x, y) (double)powl((long double)(x), (long double)(y))
+#endif
+
 double pow(double x, double y) {
     if (y - y == 0 && y == floor(y)) {
         return power_whole(x, y);
@@ -83,7 +93,7 @@ double pow(double x, double y) {
         return (double)NAN; /* the compiler does not fold NaN, so the running script calls again */
     }
     if (sandbox == NULL || !lua_asks(sandbox)) {
-        return (double)powl((long double)x, (long double)y);
+        return ROUNDED_POWER(x, y);
     }
     sandbox->power_exponent = y;
     sandbox->power_pending = true;

@@ -159,6 +159,7 @@ static struct {
 } kept = {.mutex = PTHREAD_MUTEX_INITIALIZER};
 
 static bool find_plain(const char *path, file_id_t *id) {
+#if defined(STATX_BTIME)
     struct statx status;
     const bool plain = path && statx(AT_FDCWD, path, 0, STATX_TYPE | STATX_INO | STATX_BTIME, &status) == 0 &&
                        S_ISREG(status.stx_mode);
@@ -169,6 +170,14 @@ static bool find_plain(const char *path, file_id_t *id) {
                           .born_s = status.stx_btime.tv_sec};
     }
     return plain;
+#else /* a page's files, in memory, have no time of birth */
+    struct stat status;
+    const bool plain = path && stat(path, &status) == 0 && S_ISREG(status.st_mode);
+    if (plain) {
+        *id = (file_id_t){.number = status.st_ino};
+    }
+    return plain;
+#endif
 }
 
 static bool is_listed(const file_id_t *id) {
