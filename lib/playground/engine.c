@@ -64,7 +64,7 @@ static bool take_request(const char *text) {
         .parameters = engine.parameters,
         .parameter_count = count,
         .limits = {.instructions = (uint64_t)json_number_value(json_object_get(engine.request, "budget"))},
-        .keep_ways = true,
+        .keeps = WH_FLOW_WAYS,
         .listener = wh_run_listener(&engine.signals)};
     return engine.options.script != NULL;
 }

@@ -1,4 +1,5 @@
-/* The fields and words of layouts and scripts, read from the text of `waferhand definitions`: annotations for the Lua language server. */
+/* The fields and words of layouts and scripts, read from the text of `waferhand definitions`: annotations for the Lua language
+ * server. */
 (function (P) {
     'use strict';
 

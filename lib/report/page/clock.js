@@ -142,7 +142,11 @@
         changed('play');
     };
 
+    /* After its end nobody is told anything. */
+    const end = () => Object.values(listeners).forEach((list) => list.splice(0));
+
     clock.start = function (doc) {
+        W.atEnd(end);
         clock.end = doc.duration;
         clock.slice = doc.slice;
         clock.begin = Math.min(doc.begin, doc.duration);

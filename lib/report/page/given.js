@@ -2,9 +2,9 @@
  * posts { document: text or UTF-8 bytes, theme } to this window, and hears { waiting }, { seen } at the first picture, { shown }
  * when all is there, and { theme } when a reader has chosen one.
  *
- * With another document the page begins anew, without being loaded: its parts are emptied and its scripts run again. Code of others
- * (three.js, dygraphs) stays, and so does what a reader has chosen: view, hidden parts, speed, and the time if the title is
- * the same. */
+ * With another document the page begins anew, without being loaded: its parts are emptied and its scripts run again. Code of
+ * others (three.js, dygraphs) stays, and so does what a reader has chosen: view, hidden parts, speed, and the time if the title
+ * is the same. */
 (function (W) {
     'use strict';
 
