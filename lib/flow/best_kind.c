@@ -99,6 +99,9 @@ static char *refuse_size(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
         tool->station_count > INT16_MAX) {
         return refuse(NULL, "at most 8 wafers, 4 robots and 24 places");
     }
+    if (wh_flow_has_real(tool)) {
+        return refuse(NULL, "robots that are times alone: how long those with axes take is not known");
+    }
     if (plan->down_count > 0 || plan->takt_us > 0 || plan->until_us != WH_FLOW_NEVER) {
         return refuse(NULL, "flows without `down`, `takt` and `until_s`");
     }
