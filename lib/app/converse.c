@@ -141,6 +141,8 @@ static int converse(wh_transcript_t *played) {
     if (read_heads(played, &heads)) {
         host.shows_one_run = heads.shows_one_run;
         const wh_session_options_t wanted = {.layout = heads.layout,
+                                             .is_of_hosts = true,
+                                             .slows_down = true,
                                              .limits = {.print_to = stderr},
                                              .parameters = heads.parameters,
                                              .parameter_count = heads.count,

@@ -151,6 +151,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
         .parameters = arguments->run.run.parameters,
         .parameter_count = arguments->run.run.parameter_count,
         .partners = wh_mcs_process_partners(&link->control),
+        .is_of_hosts = true,
     };
     int status = WH_EXIT_USAGE;
     wanted.listener = wh_live_listener(arguments->run.live, &wanted.listener);

@@ -429,6 +429,8 @@ static bool open_session(served_t *served, const arguments_t *arguments) {
         .parameter_count = arguments->layout.parameters.count,
         .listener = wh_host_listener(&served->host),
         .keeps_all = wh_run_files_wanted(&arguments->run.files),
+        .is_of_hosts = true,
+        .slows_down = true,
         .untried = say_untried};
     if (!wh_serve_cell_open(&served->cell, &arguments->cell, &served->host, &wanted.partners)) {
         return false;

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "../text/clock.h"
+
 const wh_option_t wh_serve_cell_options[] = {
     {"sim", 0, NULL, "The simulator is another process: `waferhand sim LAYOUT`, at --lcm-url", WH_OPTION_FLAG,
      .variable = offsetof(wh_serve_cell_arguments_t, sim)},
@@ -81,6 +83,22 @@ static void tick_link(void *user) {
     wh_mcs_process_idle(&cell->link.control);
 }
 
+/* A STOP waits so long for the answer to the slice that is under way, us: then the motion slows down as in
+ * one process. A simulator that takes longer is silent, and the motion ends where it is. */
+#define SILENT_US 500000
+
+/* True if all that runs is to stop, and the simulator has been silent since. */
+static bool is_stopped_and_silent(wh_serve_cell_t *cell) {
+    const wh_session_t *session = cell->host->session;
+    const int64_t now = wh_clock_us(CLOCK_MONOTONIC);
+    const bool is_stopped = wh_host_is_stopped(cell->host) || wh_mcs_is_to_end(&session->mcs);
+    if (!is_stopped || cell->stopped_us == 0 || cell->stopped_slice != wh_session_slice(session)) {
+        cell->stopped_us = is_stopped ? now : 0;
+        cell->stopped_slice = wh_session_slice(session);
+    }
+    return is_stopped && now - cell->stopped_us > SILENT_US;
+}
+
 /* A host's STOP, or a signal, ends the wait for a simulator that is silent. */
 static void wait_for_simulator(void *user) {
     wh_serve_cell_t *cell = user;
@@ -88,7 +106,7 @@ static void wait_for_simulator(void *user) {
     if (*cell->host->stop != 0) {
         wh_host_end(cell->host);
     }
-    if (*cell->host->stop != 0 || wh_host_is_stopped(cell->host)) {
+    if (*cell->host->stop != 0 || is_stopped_and_silent(cell)) {
         cell->link.node.interrupted = true;
     }
 }
@@ -96,7 +114,6 @@ static void wait_for_simulator(void *user) {
 static void stop_by_request(void *user) {
     wh_serve_cell_t *cell = user;
     wh_host_stop(cell->host);
-    cell->link.node.interrupted = true;
 }
 
 /* A stop by a signal comes between two slices, as in one process: the client is not told of it. */

@@ -25,9 +25,10 @@ typedef struct {
     wh_host_t *host;
     wh_broadcast_t broadcast;
     wh_mcs_link_t link;
-    bool is_broadcast, is_linked; /* the broadcast is open, or the link */
-    wh_viewer_t view;             /* without a node it is closed */
-    uint64_t shown;               /* the broadcast's layout that the view shows */
+    bool is_broadcast, is_linked;      /* the broadcast is open, or the link */
+    wh_viewer_t view;                  /* without a node it is closed */
+    int64_t stopped_us, stopped_slice; /* since when a STOP waits for the answer to a slice, and to which */
+    uint64_t shown;                    /* the broadcast's layout that the view shows */
 } wh_serve_cell_t;
 
 /* Opens what the arguments ask for; `partners` are for the session of `host`, whose tick it takes. False,

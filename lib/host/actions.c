@@ -38,12 +38,16 @@ void wh_controller_stop_running(wh_controller_t *controller) {
     }
 }
 
-void wh_host_release(wh_host_t *host) {
-    if (host->holder) {
-        wh_controller_tell_others(host->holder, WH_HOST_HOLD, 0);
+void wh_controller_release_to_stop(wh_controller_t *controller) {
+    wh_host_t *host = controller->host;
+    if (!controller->leader->is_held) {
+        return;
     }
-    host->is_held = false;
-    host->holder = NULL;
+    wh_controller_tell_others(controller, WH_HOST_HOLD, 0);
+    controller->leader->is_held = false;
+    if (!wh_host_plays_jobs(host)) {
+        wh_mcs_stop_standing(&host->session->mcs);
+    }
 }
 
 /* An entry at the port whose action runs, else at the first one. Before the first port there is none: no
@@ -79,9 +83,9 @@ void wh_controller_stop_queue(wh_controller_t *controller) {
 
 void wh_host_stop(wh_host_t *host) {
     note_stop(host, WH_TRANSCRIPT_HALTED);
-    wh_host_release(host);
     for (size_t i = 0; i < host->count; ++i) {
         wh_controller_t *controller = host->controllers[i];
+        wh_controller_release_to_stop(controller);
         wh_controller_stop_queue(controller);
         controller->action.is_stopped = controller->action.is_there;
         if (controller->action.is_running) {

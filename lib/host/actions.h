@@ -19,8 +19,8 @@ void wh_host_tell_begun(wh_host_t *host);
 /* Ends this port's running action. */
 void wh_controller_stop_running(wh_controller_t *controller);
 
-/* No HOLD stands any more. */
-void wh_host_release(wh_host_t *host);
+/* A HOLD of this controller, if one stands, does so no more: what it holds is to stop where it stands. */
+void wh_controller_release_to_stop(wh_controller_t *controller);
 
 /* A STOP that comes from no port: running actions end, and waiting ones are not begun. */
 void wh_host_stop(wh_host_t *host);

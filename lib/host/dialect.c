@@ -20,8 +20,8 @@
 char wh_dialect_key;
 char wh_dialect_layout_key;
 
-const char *const wh_host_event_names[WH_HOST_EVENTS + 1] = {"wafer",    "sensor", "valve", "hold",
-                                                             "position", "error",  NULL};
+const char *const wh_host_event_names[WH_HOST_EVENTS + 1] = {"wafer", "sensor", "valve", "hold", "position",
+                                                             "error", "door",   "mode",  NULL};
 
 static const wh_reader_field_t dialect_fields[] = {
     {"name", "string", "what it is", true},
@@ -47,6 +47,7 @@ static const wh_reader_field_t dialect_fields[] = {
     {"events", "table", "the kinds of events that it is told", false},
     {"connected", "function", "a client has come", false},
     {"gone", "function", "a client has gone", false},
+    {"begins", "string", "CONTROLLER lines for the start", false},
     {"tester", "function", "a tester tells it something", false},
     {"idle", "number", "s after which a silent client is closed", false},
     {"completes_to", "string", "who hears of a command's end", false},
@@ -200,7 +201,8 @@ static void read_when(wh_reader_t *reader, wh_dialect_command_t *command) {
                                    : "\"at once\" or \"idle\" of what is no action");
     }
     if (command->when == WH_WHEN_IDLE && !may_wait(command->kind)) {
-        wh_reader_refuse(reader, "when", "idle", "\"at once\" of STOP, HOLD, RESUME, RATE and ACKN");
+        wh_reader_refuse(reader, "when", "idle",
+                         "\"at once\" of STOP, HOLD, RESUME, CONTROLLER, RATE and ACKN");
     }
     command->queue = wh_reader_whole(reader, "queue", 0, 0, WH_DIALECT_QUEUE);
     if (command->queue > 0 && !is_action) {
@@ -352,7 +354,8 @@ static void read_events(wh_reader_t *reader, wh_dialect_clients_t *clients) {
             ++kind;
         }
         if (kind == WH_HOST_EVENTS) {
-            wh_reader_fail(reader, NULL, "a list of wafer, sensor, valve, hold, position and error");
+            wh_reader_fail(reader, NULL,
+                           "a list of wafer, sensor, valve, hold, position, error, door and mode");
         }
         clients->events |= 1U << kind;
         lua_pop(reader->L, 1);
@@ -370,6 +373,12 @@ static void read_clients(wh_reader_t *reader, wh_dialect_t *dialect) {
     clients->greets = has_function(reader, &(wh_reader_field_t){"connected", "function", "", false});
     clients->hears_testers = has_function(reader, &(wh_reader_field_t){"tester", "function", "", false});
     clients->heeds_going = has_function(reader, &(wh_reader_field_t){"gone", "function", "", false});
+}
+
+static void read_begins(wh_reader_t *reader, wh_dialect_t *dialect) {
+    (void)wh_reader_push(reader, "begins");
+    wh_dialect_take_conditions(reader->L, dialect, "begins", &dialect->begins);
+    lua_pop(reader->L, 1);
 }
 
 static void read_timing(wh_reader_t *reader, wh_dialect_t *dialect) {
@@ -424,6 +433,7 @@ static int read_dialect(lua_State *L) {
     read_errors(&reader, dialect);
     read_states(&reader, dialect);
     read_clients(&reader, dialect);
+    read_begins(&reader, dialect);
     read_timing(&reader, dialect);
     read_chaos(&reader, dialect);
     return 0;

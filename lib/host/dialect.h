@@ -98,6 +98,8 @@ typedef enum {
     WH_HOST_HOLD,     /* a HOLD begins, or ends */
     WH_HOST_POSITION, /* an action has ended well */
     WH_HOST_ERROR,    /* an action has failed */
+    WH_HOST_DOOR,     /* a door has come to an end, or has left it */
+    WH_HOST_MODE,     /* a robot's own controller has changed: its power, its mode, ... */
     WH_HOST_EVENTS
 } wh_host_event_kind_t;
 extern const char *const wh_host_event_names[WH_HOST_EVENTS + 1];
@@ -114,6 +116,12 @@ typedef struct {
     size_t port_count;        /* at least 1 */
     char ports[WH_DIALECT_PORTS][WH_DIALECT_NAME_BYTES]; /* their names; empty: it has one */
 } wh_dialect_clients_t;
+
+/* Our lines for a request, or for a LOCAL one its answer as the only line. */
+typedef struct {
+    char lines[WH_DIALECT_LINES][WH_DIALECT_LINE_BYTES];
+    size_t count;
+} wh_lines_t;
 
 /* Read-only for others. Must not be moved while it is open. */
 typedef struct {
@@ -133,6 +141,7 @@ typedef struct {
     wh_dialect_code_t *codes;
     size_t code_count, code_capacity;
     char other_code[WH_DIALECT_NAME_BYTES]; /* of errors that are not in the table */
+    wh_lines_t begins;                      /* CONTROLLER, of its robot at the start */
     bool states[3];                         /* if it has a word of its own for idle, running, held */
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* of the last call that failed */
     char *text; /* of the last frames that were encoded, with a byte 0 between two; null: none */
@@ -184,12 +193,6 @@ wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client,
                                size_t size, wh_request_t *request, wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
-/* Makes our lines for a request, or for a LOCAL one its answer as the only line. */
-typedef struct {
-    char lines[WH_DIALECT_LINES][WH_DIALECT_LINE_BYTES];
-    size_t count;
-} wh_lines_t;
-
 /* ------------------------------------------------------------------------------------------------ a reply */
 
 /* The result of a request. */
@@ -203,6 +206,7 @@ typedef struct {
     const wh_port_mechanism_t *mechanism; /* what the port stands for; null with no layout */
     uint32_t sensors;       /* what the vacuum sensors of its grippers say: bit g of gripper g */
     const wh_pose_t *poses; /* of the grippers, base_from_gripper; null: none */
+    const char *controller; /* what its robot's own controller has, name=value pairs; null: unknown */
 } wh_result_t;
 
 /* An event that concerns a wafer. */
@@ -213,6 +217,8 @@ typedef struct {
     double seconds;     /* simulated, since the run's beginning */
     int value;          /* a sensor or valve is on, a HOLD begins: 0 or 1; an error's number; -1: none */
     const char *at;     /* the controller whose action or HOLD it is; null: none's */
+    const char *door;   /* null: none */
+    const char *state;  /* of a robot's own controller, name=value pairs; null: none */
     wh_client_t client; /* to whom it is told */
 } wh_host_event_t;
 
@@ -235,15 +241,16 @@ typedef struct {
  * Without text (null) nothing is sent. An encoder that the dialect does not have makes none. */
 bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_told_t *told);
 
-/* Calls connected(client) or gone(client), if the dialect has them: `text` is then a greeting. False: a
- * mistake, see `message`. */
+/* Calls connected(client) or gone(client), if the dialect has them: `text` is then a greeting, `lines` are
+ * lines of CONTROLLER. False: a mistake, see `message`. */
 bool wh_dialect_welcome(wh_dialect_t *dialect, const wh_client_t *client);
-bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client);
+bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client, wh_lines_t *lines);
 
 /* Calls tester(text): a tester tells the controller something that only hands can do, such as to press an
  * emergency stop. It is a request, or nothing without such a function, or refused, or a mistake. `stops`: the
- * function returned true, and what runs stops. */
-wh_decoded_t wh_dialect_tell(wh_dialect_t *dialect, const char *text, bool *stops, wh_failure_t *failure);
+ * function returned true, and what runs stops; or it returned `lines` of CONTROLLER. */
+wh_decoded_t wh_dialect_tell(wh_dialect_t *dialect, const char *text, bool *stops, wh_lines_t *lines,
+                             wh_failure_t *failure);
 
 /* True if the last call failed because the dialect refused by host.refuse: then `failure` says why. An
  * `answer` may refuse so, too. */

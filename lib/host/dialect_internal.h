@@ -13,6 +13,11 @@ void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
 #define WH_DIALECT_STARTS_BYTES (WH_FRAMING_MARKS * (4 * WH_FRAMING_MARK + 4) + 1)
 const char *wh_dialect_list_starts(const wh_framing_t *framing, char text[WH_DIALECT_STARTS_BYTES]);
 
+/* Takes the lines of CONTROLLER on top of the stack: a text, a list of texts, or nil. Raises if there is
+ * anything else; `function` names it. */
+void wh_dialect_take_conditions(lua_State *L, const wh_dialect_t *dialect, const char *function,
+                                wh_lines_t *lines);
+
 /* True for the tester's own dialect: built in, or the file that it is made of. */
 bool wh_dialect_is_testers(const char *path);
 

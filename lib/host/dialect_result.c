@@ -156,7 +156,14 @@ static void set_poses(lua_State *L, const wh_dialect_t *dialect, const wh_result
     lua_setfield(L, -2, "poses");
 }
 
+/* Sets what its robot's own controller has; an empty table without a cell. */
+static void set_controller(lua_State *L, const wh_result_t *result) {
+    wh_push_values(L, result->controller ? result->controller : "");
+    lua_setfield(L, -2, "controller");
+}
+
 static void set_status(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result) {
+    set_controller(L, result);
     wh_lua_set_boolean(L, "is_held", result->is_held);
     wh_push_values(L, result->status);
     lua_setfield(L, -2, "status");

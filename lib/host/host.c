@@ -10,6 +10,7 @@
 
 #include "../record/record.h"
 #include "../text/array.h"
+#include "conditions.h"
 #include "journal.h"
 #include "line.h"
 #include "playing.h"
@@ -79,8 +80,8 @@ static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
 /* Nothing moves for now. */
 static void tell_standstill(const wh_host_t *host) {
     if (host->next.tell) {
-        host->next.tell(host->next.user, &host->session->mcs, host->is_held ? WH_MCS_HELD : WH_MCS_NOT_HELD,
-                        NULL);
+        host->next.tell(host->next.user, &host->session->mcs,
+                        wh_host_is_held(host) ? WH_MCS_HELD : WH_MCS_NOT_HELD, NULL);
     }
 }
 
@@ -102,22 +103,23 @@ static int64_t end_of_slice(const wh_host_t *host) {
     return host->rate > 0 ? host->clock.base_wall_us + (int64_t)(run_us / host->rate) : 0;
 }
 
-/* While it is held the run stands still, and the clock with it. False: nothing can end this HOLD. */
+/* While all that runs is held the run stands still, and the clock with it. False: nothing can end this
+ * HOLD. */
 static bool wait_held(wh_host_t *host) {
-    if (!host->is_held) {
+    if (!wh_host_is_held(host)) {
         return true;
     }
     const int64_t begin = wh_host_now(host);
     bool goes_on = true;
     tell_standstill(host);
-    while (host->is_held && !*host->stop && goes_on) {
+    while (wh_host_is_held(host) && !*host->stop && goes_on) {
         goes_on = wait_and_serve(host, wh_host_now(host) + LONGEST_WAIT_US);
         host->clock.lua_us = 0;
     }
     host->clock.base_wall_us += wh_host_now(host) - begin;
     host->clock.held_us += wh_host_now(host) - begin;
     tell_standstill(host);
-    return goes_on || !host->is_held;
+    return goes_on || !wh_host_is_held(host);
 }
 
 /* ------------------------------------------------------------------------------------------------- slices */
@@ -150,6 +152,30 @@ static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_
     host->seen.sensors = state->sensors;
 }
 
+static uint32_t find_doors(const wh_host_t *host, const char *word) {
+    const wh_mcs_t *mcs = &host->session->mcs;
+    uint32_t doors = 0;
+    for (size_t d = 0; d < mcs->layout->machine.door_count; ++d) {
+        doors |= strcmp(wh_mcs_door_word(mcs, d), word) == 0 ? 1U << d : 0;
+    }
+    return doors;
+}
+
+/* Tells which doors have come to an end, or have left it. */
+static void tell_doors(wh_host_t *host) {
+    const uint32_t open = find_doors(host, "open");
+    const uint32_t shut = find_doors(host, "shut");
+    const uint32_t changed = (open ^ host->seen.open) | (shut ^ host->seen.shut);
+    for (size_t d = 0; changed >> d != 0; ++d) {
+        if ((changed >> d & 1U) != 0) {
+            const bool stands = ((open | shut) >> d & 1U) != 0;
+            wh_host_tell_door(host, d, stands ? (int)(open >> d & 1U) : -1);
+        }
+    }
+    host->seen.open = open;
+    host->seen.shut = shut;
+}
+
 /* Serves the ports until the slice's time is over. */
 static void serve_slice(wh_host_t *host) {
     const int64_t end = end_of_slice(host);
@@ -179,6 +205,8 @@ static void on_slice(void *user, const wh_command_t *command, const wh_state_t *
     wh_host_heed_clock(host);
     tell_events(host, state);
     tell_changes(host, command, state);
+    tell_doors(host);
+    wh_host_tell_modes(host);
     wh_host_tell_begun(host);
     serve_slice(host);
 }
@@ -195,6 +223,9 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 
 static void on_begin(void *user, const wh_layout_t *layout) {
     const wh_host_t *host = user;
+    for (size_t i = 0; i < host->count; ++i) { /* they were taken when the ports were opened */
+        (void)wh_controller_begin_conditions(host->controllers[i]);
+    }
     if (host->next.begins) {
         host->next.begins(host->next.user, layout);
     }
@@ -418,7 +449,8 @@ bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
         return false;
     }
     wh_dialect_show(controller->dialect, layout);
-    return open_ports(controller, port, controller->dialect->clients.ports[0]);
+    return wh_controller_begin_conditions(controller) &&
+           open_ports(controller, port, controller->dialect->clients.ports[0]);
 }
 
 bool wh_host_add_control(wh_host_t *host, const char *address) {

@@ -96,9 +96,7 @@ static void end_action(wh_controller_t *controller, bool failed) {
         told->failed_order = ++host->so_far.failures;
         (void)snprintf(told->failed_line, sizeof told->failed_line, "%s", controller->action.lines.lines[at]);
     }
-    if (host->holder == controller) {
-        host->is_held = false;
-    }
+    controller->leader->is_held = false;
     host->running = find_running(host);
     wh_controller_end(controller, controller->action.ended, controller->action.ended_text,
                       seconds_of(controller));
@@ -150,5 +148,4 @@ void wh_host_play_jobs(wh_host_t *host) {
         }
     }
     host->running = NULL;
-    host->is_held = false;
 }

@@ -58,6 +58,6 @@ void wh_controller_play(wh_controller_t *controller) {
         forget_failures(host);
     }
     host->running = NULL;
-    host->is_held = false;
+    controller->leader->is_held = false;
     wh_controller_end(controller, status, text, (double)(slices * wh_session_slice_us(session)) / 1e6);
 }

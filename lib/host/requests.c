@@ -7,6 +7,7 @@
 #include <lauxlib.h>
 
 #include "actions.h"
+#include "conditions.h"
 #include "journal.h"
 #include "queue.h"
 #include "status.h"
@@ -33,10 +34,9 @@ static void stop_acting(const wh_controller_t *controller) {
 
 static void answer_stop(wh_controller_t *controller, const wh_request_t *request) {
     wh_host_t *host = controller->host;
-    const bool is_holder = host->holder && host->holder->leader == controller->leader;
     const bool is_any = wh_controller_acting(controller);
-    if (is_any && is_holder) {
-        wh_host_release(host);
+    if (is_any && controller->leader->is_held) {
+        wh_controller_release_to_stop(controller);
     }
     stop_acting(controller);
     if (!is_any && may_give_up(controller)) {
@@ -48,15 +48,13 @@ static void answer_stop(wh_controller_t *controller, const wh_request_t *request
 static void answer_hold(wh_controller_t *controller, const wh_request_t *request, bool is_held) {
     wh_host_t *host = controller->host;
     const wh_controller_t *acting = wh_controller_acting(controller);
-    const bool is_its_own = host->holder && host->holder->leader == controller->leader;
-    const bool is_its_turn = host->is_held ? is_its_own : is_held;
-    if (!acting || !acting->action.is_running || !is_its_turn) {
+    if (!acting || !acting->action.is_running || controller->leader->is_held == is_held) {
         wh_controller_refuse(controller, request, WH_STATUS_NOT_IN_PHASE,
                              is_held ? "no command of this controller runs" : "no HOLD stands");
         return;
     }
-    host->is_held = is_held;
-    host->holder = is_held ? controller : NULL;
+    controller->leader->is_held = is_held;
+    wh_mcs_hold_job(&host->session->mcs, wh_controller_job(controller), is_held);
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
     wh_controller_tell_others(controller, WH_HOST_HOLD, is_held ? 1 : 0);
 }
@@ -246,17 +244,32 @@ static void set_rate(wh_controller_t *controller, const wh_request_t *request, c
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
 }
 
+/* The robot's own controller changes by what a tester has told. */
+static wh_decoded_t change_by_tester(wh_controller_t *controller, const wh_lines_t *lines,
+                                     wh_failure_t *failure) {
+    char reason[WH_MCS_CHANGE_BYTES];
+    const wh_status_t status = wh_controller_change(controller, lines, reason);
+    wh_host_tell_modes(controller->host);
+    if (status == WH_OK) {
+        return WH_DECODED_REQUEST;
+    }
+    failure->number = status;
+    (void)snprintf(failure->detail, sizeof failure->detail, "%s", reason);
+    return WH_DECODED_REFUSED;
+}
+
 /* Tells a dialect, once for all of its ports. A running action stops if the dialect says so. */
-static wh_decoded_t tell_leader(const wh_controller_t *controller, const char *text, wh_failure_t *failure) {
+static wh_decoded_t tell_leader(wh_controller_t *controller, const char *text, wh_failure_t *failure) {
+    wh_lines_t *conditions = &controller->host->texts->conditions;
     bool stops = false;
     if (controller->leader != controller) {
         return WH_DECODED_NOTHING;
     }
-    const wh_decoded_t outcome = wh_dialect_tell(controller->dialect, text, &stops, failure);
+    const wh_decoded_t outcome = wh_dialect_tell(controller->dialect, text, &stops, conditions, failure);
     if (outcome == WH_DECODED_REQUEST && stops) {
         stop_acting(controller);
     }
-    return outcome;
+    return outcome == WH_DECODED_REQUEST ? change_by_tester(controller, conditions, failure) : outcome;
 }
 
 /* "TELL estop on": each controller whose dialect hears testers is told the rest. */
@@ -283,6 +296,21 @@ static void tell_controllers(wh_controller_t *controller, const wh_request_t *re
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
 }
 
+/* "CONTROLLER power=off", which passes at any time. */
+static void answer_controller(wh_controller_t *controller, const wh_request_t *request,
+                              const wh_lines_t *lines) {
+    char reason[WH_MCS_CHANGE_BYTES];
+    char answer[WH_MCS_CHANGE_BYTES + 3] = "OK ";
+    const wh_status_t status = wh_controller_change(controller, lines, reason);
+    if (status != WH_OK) {
+        wh_controller_refuse(controller, request, status, reason);
+        return;
+    }
+    wh_controller_tell_conditions(controller, answer + strlen(answer), sizeof answer - strlen(answer));
+    wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, answer, 0);
+    wh_host_tell_modes(controller->host);
+}
+
 /* Makes the request's lines, and answers or accepts it. */
 static void carry_out(wh_controller_t *controller, wh_request_t *request) {
     wh_lines_t *lines = &controller->host->texts->lines;
@@ -299,6 +327,8 @@ static void carry_out(wh_controller_t *controller, wh_request_t *request) {
         wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
     } else if (kind == WH_WORD_RATE) {
         set_rate(controller, request, lines->lines[0]);
+    } else if (kind == WH_WORD_CONTROLLER) {
+        answer_controller(controller, request, lines);
     } else if (kind == WH_WORD_TELL) {
         tell_controllers(controller, request, lines->lines[0]);
     } else if (kind == WH_WORD_ACTION) {

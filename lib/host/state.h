@@ -139,6 +139,7 @@ struct wh_controller {
     const char *role;        /* its name in the dialect's `ports` */
     bool is_tester;          /* it stands for no mechanism: a tester beside the hosts */
     wh_pending_t *pending;   /* of the leader: what waits, in its order */
+    bool is_held;            /* of the leader: a HOLD of its own stands */
     uint64_t guests;         /* of the leader: clients at its dialect's ports, so far */
     wh_action_t action;
     wh_owed_ackn_t owed;
@@ -163,8 +164,10 @@ typedef struct {
     char asked[WH_SESSION_ANSWER_BYTES];   /* the answer to a query */
     char told[WH_MCS_DESCRIPTION_BYTES + 4];
     char status[WH_MCS_DESCRIPTION_BYTES], own_status[WH_MCS_DESCRIPTION_BYTES];
-    wh_lines_t lines;             /* of the request that has come */
-    wh_pose_t poses[WH_GRIPPERS]; /* of the blades, now */
+    char controller[400], mode[400]; /* what a robot's own has: in an answer, and in an event */
+    wh_lines_t lines;                /* of the request that has come */
+    wh_lines_t conditions;           /* of a client that has gone, or of a tester */
+    wh_pose_t poses[WH_GRIPPERS];    /* of the blades, now */
 } wh_host_texts_t;
 
 /* The caller's functions; each may be null. */
@@ -186,7 +189,9 @@ typedef struct {
 
 /* The cell as the host saw it last. */
 typedef struct {
-    uint32_t sensors, valves;  /* of the last slice, by gripper: on, open */
+    uint32_t sensors, valves; /* of the last slice, by gripper: on, open */
+    uint32_t open, shut;      /* by door: the switches */
+    wh_mcs_controller_t controllers[WH_LAYOUT_ROBOTS];
     wh_event_kind_t complaint; /* the last one, where session->complaints says that there was one */
 } wh_host_seen_t;
 
@@ -208,8 +213,6 @@ struct wh_host {
     size_t count, leaders;
     wh_controller_t *running; /* the controller whose action runs; with several, the one that began last;
                                * null: none */
-    wh_controller_t *holder;  /* whose HOLD it is */
-    bool is_held;             /* by a HOLD */
     bool is_told_to_stop;     /* of what runs */
     bool is_ended;            /* the operator ended it: nothing is begun any more */
     wh_host_counts_t so_far;

@@ -48,6 +48,27 @@ wh_controller_t *wh_host_next_action(const wh_host_t *host) {
     return next;
 }
 
+bool wh_controller_is_held(const wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    bool is_any = controller->leader->is_held;
+    for (size_t i = 0; i < host->count && controller->leader->is_tester; ++i) {
+        is_any = is_any || host->controllers[i]->is_held;
+    }
+    return is_any;
+}
+
+bool wh_host_is_held(const wh_host_t *host) {
+    bool is_any = false;
+    bool is_all = !wh_host_next_action(host);
+    for (size_t i = 0; i < host->count; ++i) {
+        const wh_controller_t *controller = host->controllers[i];
+        const bool is_held = controller->action.is_running && controller->leader->is_held;
+        is_any = is_any || is_held;
+        is_all = is_all && (!controller->action.is_running || is_held || wh_controller_waits(controller));
+    }
+    return is_any && is_all;
+}
+
 bool wh_host_is_stopped(const wh_host_t *host) {
     bool is_any = wh_session_has_stop(host->session);
     bool is_all = true;

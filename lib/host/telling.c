@@ -8,6 +8,7 @@
 #include "../record/record.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
+#include "conditions.h"
 #include "journal.h"
 #include "line.h"
 #include "status.h"
@@ -133,9 +134,16 @@ void wh_controller_greet(wh_controller_t *controller) {
 
 void wh_controller_part(wh_controller_t *controller) {
     const wh_client_t client = {controller->role, controller->line.client};
-    if (controller->dialect->clients.heeds_going && !wh_dialect_part(controller->dialect, &client)) {
+    wh_lines_t *lines = &controller->host->texts->conditions;
+    char reason[WH_MCS_CHANGE_BYTES];
+    if (controller->dialect->clients.heeds_going && !wh_dialect_part(controller->dialect, &client, lines)) {
+        say_mistake(controller, controller->dialect->message);
+    } else if (controller->dialect->clients.heeds_going &&
+               wh_controller_change(controller, lines, reason) != WH_OK) {
+        wh_dialect_note(controller->dialect, reason);
         say_mistake(controller, controller->dialect->message);
     }
+    wh_host_tell_modes(controller->host);
 }
 
 void wh_controller_tell_again(wh_controller_t *controller, const wh_reply_t *reply) {
@@ -175,16 +183,19 @@ void wh_controller_refuse(wh_controller_t *controller, const wh_request_t *reque
 
 void wh_controller_tell_now(void *user, wh_result_t *now) {
     const wh_controller_t *controller = user;
+    wh_host_texts_t *texts = controller->host->texts;
     char *status = controller->host->texts->status;
     const wh_session_t *session = controller->host->session;
     wh_controller_describe(controller, status);
     *now = (wh_result_t){.answer = "",
                          .status = status,
-                         .is_held = controller->host->is_held,
+                         .is_held = wh_controller_is_held(controller),
                          .layout = wh_session_layout(session),
                          .mechanism = &controller->mechanism,
                          .sensors = wh_session_sensors(session),
-                         .poses = controller->host->texts->poses};
+                         .poses = texts->poses,
+                         .controller = texts->controller};
+    wh_controller_tell_conditions(controller, texts->controller, sizeof texts->controller);
     wh_session_poses(session, controller->host->texts->poses);
 }
 
@@ -241,6 +252,64 @@ void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t grip
     for (size_t i = 0; i < host->count; ++i) {
         if ((host->controllers[i]->mechanism.grippers >> gripper & 1U) != 0) {
             tell_event(host->controllers[i], kind, told);
+        }
+    }
+}
+
+/* At the ports of the station that the door belongs to, of the whole cell, and of testers. */
+static bool concerns_door(const wh_controller_t *controller, size_t door) {
+    const wh_layout_t *layout = wh_session_layout(controller->host->session);
+    const wh_port_mechanism_t *mechanism = &controller->mechanism;
+    bool is_its = mechanism->kind == WH_MECHANISM_CELL;
+    for (size_t robot = 0; robot < layout->robot_count && mechanism->kind > WH_MECHANISM_ROBOT; ++robot) {
+        is_its = is_its || mechanism->index == WH_NONE ||
+                 wh_layout_door_of(layout, (size_t)mechanism->index, robot) == (int32_t)door;
+    }
+    return is_its;
+}
+
+void wh_host_tell_door(wh_host_t *host, size_t door, int value) {
+    const wh_host_event_t told = {.kind = wh_host_event_names[WH_HOST_DOOR],
+                                  .wafer = "",
+                                  .gripper = "",
+                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
+                                  .value = value,
+                                  .door = wh_session_layout(host->session)->door_list[door].name};
+    for (size_t i = 0; i < host->count; ++i) {
+        if (concerns_door(host->controllers[i], door)) {
+            tell_event(host->controllers[i], WH_HOST_DOOR, told);
+        }
+    }
+}
+
+/* Tells a change of this robot's own controller, at its ports and at those of all robots. */
+static void tell_mode(wh_host_t *host, size_t robot) {
+    char *text = host->texts->mode;
+    const wh_host_event_t told = {.kind = wh_host_event_names[WH_HOST_MODE],
+                                  .wafer = "",
+                                  .gripper = "",
+                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
+                                  .value = -1,
+                                  .at = wh_session_layout(host->session)->robots[robot].name,
+                                  .state = text};
+    wh_host_tell_conditions(host, robot, text, sizeof host->texts->mode);
+    for (size_t i = 0; i < host->count; ++i) {
+        const wh_port_mechanism_t *mechanism = &host->controllers[i]->mechanism;
+        const bool is_its = mechanism->kind <= WH_MECHANISM_ROBOT &&
+                            (mechanism->index == WH_NONE || mechanism->index == (int32_t)robot);
+        if (is_its) {
+            tell_event(host->controllers[i], WH_HOST_MODE, told);
+        }
+    }
+}
+
+void wh_host_tell_modes(wh_host_t *host) {
+    const wh_mcs_t *mcs = &host->session->mcs;
+    for (size_t robot = 0; mcs->layout && robot < mcs->layout->robot_count; ++robot) {
+        if (memcmp(&host->seen.controllers[robot], &mcs->armed.controllers[robot],
+                   sizeof mcs->armed.controllers[0]) != 0) {
+            host->seen.controllers[robot] = mcs->armed.controllers[robot];
+            tell_mode(host, robot);
         }
     }
 }

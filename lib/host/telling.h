@@ -37,6 +37,12 @@ void wh_controller_event(wh_controller_t *controller, const wh_event_t *event, d
 /* A gripper's sensor or valve has changed. */
 void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, int value);
 
+/* A door is open, shut (1, 0), or neither (-1). */
+void wh_host_tell_door(wh_host_t *host, size_t door, int value);
+
+/* Tells which robots' own controllers have changed since they were told last. */
+void wh_host_tell_modes(wh_host_t *host);
+
 /* This controller's action has ended, or its HOLD begins or ends: told at its own ports and to testers. */
 void wh_controller_tell_others(const wh_controller_t *controller, wh_host_event_kind_t kind, int value);
 

@@ -22,16 +22,17 @@ extern const char *const wh_mechanism_names[WH_MECHANISMS + 1];
 
 /* The treatment of a command. */
 typedef enum {
-    WH_WORD_ACTION, /* takes simulated time or changes the cell: begun when it comes, ended later */
-    WH_WORD_QUERY,  /* changes nothing; refused as busy while something runs */
-    WH_WORD_ALWAYS, /* STATUS and VERSION: answered at any time */
-    WH_WORD_STOP,   /* ends what runs */
-    WH_WORD_HOLD,   /* the running command stands still after the present slice: time does not pass */
-    WH_WORD_RESUME, /* and goes on */
-    WH_WORD_RATE,   /* the pace of simulated time */
-    WH_WORD_TELL,   /* a tester tells the other controllers something */
-    WH_WORD_ACKN,   /* the host has had the completion */
-    WH_WORD_LOCAL   /* the dialect answers by itself */
+    WH_WORD_ACTION,     /* takes simulated time or changes the cell: begun when it comes, ended later */
+    WH_WORD_QUERY,      /* changes nothing; refused as busy while something runs */
+    WH_WORD_ALWAYS,     /* STATUS and VERSION: answered at any time */
+    WH_WORD_STOP,       /* ends what runs */
+    WH_WORD_HOLD,       /* the running command stands still after the present slice: time does not pass */
+    WH_WORD_RESUME,     /* and goes on */
+    WH_WORD_CONTROLLER, /* a robot's own controller: changed and told at any time */
+    WH_WORD_RATE,       /* the pace of simulated time */
+    WH_WORD_TELL,       /* a tester tells the other controllers something */
+    WH_WORD_ACKN,       /* the host has had the completion */
+    WH_WORD_LOCAL       /* the dialect answers by itself */
 } wh_word_kind_t;
 
 typedef struct {

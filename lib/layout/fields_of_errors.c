@@ -102,6 +102,20 @@ const wh_reader_field_t wh_layout_fault_e84_late[] = {
     E84_STEP,
     {"value", NUMBER, "s by which it does", true},
     END};
+#define ROBOT                                                                                                \
+    { "robot", "string", "its name, one of several robots'", false, .otherwise = "the only one" }
+const wh_reader_field_t wh_layout_fault_power_lost[] = {
+    {"kind", "\"power_lost\"", "the power of a robot's controller goes off, and stays off", true},
+    OF_EVERY_FAULT,
+    ROBOT,
+    END};
+const wh_reader_field_t wh_layout_fault_emergency_stop[] = {
+    {"kind", "\"emergency_stop\"", "somebody presses a robot's emergency stop, and lets go of it", true},
+    OF_EVERY_FAULT,
+    ROBOT,
+    END};
+const wh_reader_field_t wh_layout_fault_servo_error[] = {
+    {"kind", "\"servo_error\"", "a servo of a robot fails", true}, OF_EVERY_FAULT, ROBOT, END};
 const wh_reader_field_t wh_layout_fault_missing[] = {
     {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};
 const wh_reader_field_t wh_layout_fault_doubled[] = {
@@ -160,6 +174,9 @@ const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
     [WH_FAULT_STATION_SLOW] = wh_layout_fault_station_slow,
     [WH_FAULT_E84_STUCK] = wh_layout_fault_e84_stuck,
     [WH_FAULT_E84_LATE] = wh_layout_fault_e84_late,
+    [WH_FAULT_POWER_LOST] = wh_layout_fault_power_lost,
+    [WH_FAULT_EMERGENCY_STOP] = wh_layout_fault_emergency_stop,
+    [WH_FAULT_SERVO_ERROR] = wh_layout_fault_servo_error,
 };
 
 /* ---------------------------------------------------------------------------------------------- studies */

@@ -61,6 +61,13 @@ typedef struct {
     double timeout; /* how long a command waits for it once it should be there, s */
 } wh_layout_door_t;
 
+/* How a STOP ends a motion. */
+typedef enum {
+    WH_LAYOUT_STOP_USUAL, /* the layout does not say: it slows down for hosts alone */
+    WH_LAYOUT_STOP_RAMP,
+    WH_LAYOUT_STOP_FREEZE
+} wh_layout_stop_t;
+
 /* A robot: machine.mounts[].robot counts them. */
 typedef struct {
     char name[WH_NAME_SIZE];    /* "robot" of a layout that has one */
@@ -264,6 +271,7 @@ typedef struct {
     wh_world_arm_t arms[WH_LAYOUT_ARMS]; /* robot by robot: see arms.h */
     size_t arm_count;
     uint8_t carried_by[WH_GRIPPERS]; /* the arm of each gripper, or WH_WORLD_NO_ARM */
+    int32_t stop;                    /* wh_layout_stop_t */
     bool homed;                      /* false: commands that rely on the arm's position need a HOME first */
     wh_layout_door_t *door_list;     /* machine.door_count of them, sorted by name */
     /* --------------------------------------------------------------------- grippers, stations and wafers */

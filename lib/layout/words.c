@@ -14,6 +14,7 @@ const char *const wh_layout_side_words[] = {"left", "right", NULL};
 const char *const wh_layout_door_words[] = {"shut", "open", NULL};
 const char *const wh_layout_shape_words[] = {"normal", "uniform", NULL};
 const char *const wh_layout_station_words[] = {"slots", "prealigner", "foup", "flipper", "load_port", NULL};
+const char *const wh_layout_stop_words[] = {"ramp", "freeze", NULL};
 const char *const wh_layout_face_words[] = {"up", "down", NULL};
 const char *const wh_layout_vacuum_words[] = {"ideal", "delayed", NULL};
 const char *const wh_layout_unit_words[] = {"mm", "cm", "m", "inch", NULL};

@@ -15,6 +15,7 @@ extern const char *const wh_layout_door_words[];         /* shut, open */
 extern const char *const wh_layout_shape_words[];        /* wh_shape_t */
 extern const char *const wh_layout_station_words[];      /* kinds of stations: see wh_layout_station_kind */
 #define WH_LAYOUT_LOAD_PORT 4                            /* the index of "load_port" among them */
+extern const char *const wh_layout_stop_words[];         /* wh_layout_stop_t from WH_LAYOUT_STOP_RAMP on */
 extern const char *const wh_layout_face_words[];         /* wh_station_face_t from WH_STATION_FACE_UP on */
 extern const char *const wh_layout_vacuum_words[];       /* models: ideal, delayed */
 extern const char *const wh_layout_unit_words[];         /* of a mesh: mm, cm, m, inch */

@@ -111,14 +111,42 @@ static void put_axis_name(description_t *to, const wh_layout_t *layout, size_t a
     put(to, "%s", wh_axis_name(&layout->machine, axis));
 }
 
-static void put_robots(description_t *to, const wh_layout_t *layout, const wh_real_t axes[]) {
+/* By their encoders. */
+static void put_robots(description_t *to, const wh_mcs_t *mcs, const wh_real_t axes[]) {
+    const wh_layout_t *layout = mcs->layout;
     const wh_machine_t *machine = &layout->machine;
     for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
-        const double at = axes[axis];
+        const double at = (double)wh_mcs_encoder(mcs, axis, axes[axis]);
         if (wh_axis_exists(machine, axis)) {
             put_axis_name(to, layout, axis);
             put_value(to, wh_axis_turns(machine, axis) ? wh_deg_from_rad(at) : at);
         }
+    }
+}
+
+/* Where the values of a robot's controller are told. */
+typedef struct {
+    description_t *to;
+    const char *robot; /* null: there is one */
+} controller_told_t;
+
+static void put_condition(void *user, const char *name, const char *value, bool usual) {
+    const controller_told_t *told = user;
+    if (!usual) {
+        put(told->to, " ");
+        if (told->robot) {
+            put_name(told->to, told->robot);
+            put(told->to, ".");
+        }
+        put(told->to, "%s=%s", name, value);
+    }
+}
+
+/* The values of the robots' controllers that are not as usual. */
+static void put_controllers(description_t *to, const wh_mcs_t *mcs) {
+    for (size_t robot = 0; robot < wh_machine_robots(&mcs->layout->machine); ++robot) {
+        controller_told_t told = {to, mcs->layout->robot_count > 1 ? mcs->layout->robots[robot].name : NULL};
+        wh_mcs_tell_controller(mcs, robot, put_condition, &told);
     }
 }
 
@@ -328,7 +356,8 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     put(&to, " seq=%lld", (long long)seen.seq);
     put_number(&to, "time", (double)seen.utime / 1e6);
     if (mcs->layout) {
-        put_robots(&to, mcs->layout, seen.axes);
+        put_robots(&to, mcs, seen.axes);
+        put_controllers(&to, mcs);
         put_grippers(&to, mcs->layout, seen.held);
         put_doors(&to, mcs);
         put_stations(&to, mcs);

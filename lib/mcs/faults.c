@@ -254,10 +254,12 @@ static int clear_fault(lua_State *L) {
 
 /* native.fault_kinds(): the names of those on purpose. */
 static int list_kinds(lua_State *L) {
-    lua_createtable(L, WH_FAULT_WAFER_PLACED, 0);
-    for (int kind = 0; kind < WH_FAULT_WAFER_PLACED; ++kind) {
-        lua_pushstring(L, wh_fault_name((wh_fault_kind_t)kind));
-        lua_rawseti(L, -2, kind + 1);
+    lua_createtable(L, WH_FAULT_KINDS, 0);
+    for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
+        if (kind != WH_FAULT_WAFER_PLACED) {
+            lua_pushstring(L, wh_fault_name((wh_fault_kind_t)kind));
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
     }
     return 1;
 }

@@ -23,10 +23,16 @@ bool wh_mcs_job_waits(const wh_mcs_t *mcs, int32_t job) {
 void wh_mcs_end_job(wh_mcs_t *mcs, int32_t job, wh_status_t status, const char *why) {
     wh_lane_t *lane = lane_of(mcs, job);
     if (lane) {
-        lane->told = status;
         lane->told_why = why;
-        lane->is_busy = lane->is_drawn = false;
+        wh_mcs_stop_lane(mcs, lane, status);
         mcs->stop.is_called = true;
+    }
+}
+
+void wh_mcs_hold_job(wh_mcs_t *mcs, int32_t job, bool is_held) {
+    wh_lane_t *lane = lane_of(mcs, job);
+    if (lane) {
+        lane->is_held = is_held;
     }
 }
 

@@ -28,13 +28,43 @@ static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
     }
 }
 
+void wh_mcs_stop_lane(wh_mcs_t *mcs, wh_lane_t *lane, wh_status_t after) {
+    lane->after = after;
+    if (lane->ramp.is_on) {
+        return;
+    }
+    if (lane->is_busy && !lane->is_held && wh_mcs_begin_ramp(mcs, &lane->ramp, &lane->track)) {
+        return;
+    }
+    lane->told = after;
+    lane->status = after == WH_OK ? WH_STATUS_STOPPED : lane->status;
+    lane->is_busy = lane->is_drawn = lane->is_held = false;
+}
+
+/* The next slice of a segment that was stopped and slows down. False: it stands, and has ended. */
+static bool draw_stopped(wh_mcs_t *mcs, wh_lane_t *lane) {
+    lane->is_drawn = wh_ramp_next(&lane->ramp, &lane->track);
+    if (!lane->is_drawn) {
+        take_axes(mcs, lane);
+        lane->ramp.is_on = false;
+        lane->is_busy = false;
+        lane->told = lane->after;
+        lane->status = lane->after == WH_OK ? WH_STATUS_STOPPED : WH_OK;
+    }
+    return lane->is_drawn;
+}
+
 /* Asks each running segment for the next slice. A finished segment takes none: its end has exactly its
  * target's bits. True if any is finished. */
 static bool draw_lanes(wh_mcs_t *mcs) {
     bool is_any_over = false;
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
-        if (!lane->is_busy || lane->is_drawn) {
+        if (!lane->is_busy || lane->is_drawn || lane->is_held) {
+            continue;
+        }
+        if (lane->ramp.is_on) {
+            is_any_over = !draw_stopped(mcs, lane) || is_any_over;
             continue;
         }
         lane->state = wh_track_next(&lane->track, wh_mcs_sensors(mcs, &lane->awaited));
@@ -79,7 +109,7 @@ static void await_ends(const wh_mcs_t *mcs) {
 
 void wh_mcs_show_lanes(wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
-        if (mcs->lanes->of[i].is_busy) {
+        if (mcs->lanes->of[i].is_busy && !mcs->lanes->of[i].is_held) {
             take_axes(mcs, &mcs->lanes->of[i]);
             take_valves(mcs, &mcs->lanes->of[i]);
         }
@@ -107,29 +137,50 @@ static wh_status_t play_slice(wh_mcs_t *mcs) {
 }
 
 /* Stops the segments that move one of these axes; WH_MCS_ALL: all segments. */
-static void give_up_segments(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
+static void give_up_segments(wh_mcs_t *mcs, uint32_t axes, wh_status_t status, bool may_slow_down) {
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
         if (lane->is_busy && (axes == WH_MCS_ALL || (lane->axes & axes) != 0)) {
+            if (status == WH_STATUS_STOPPED && may_slow_down) {
+                wh_mcs_stop_lane(mcs, lane, WH_OK);
+                continue;
+            }
             lane->status = status;
-            lane->is_busy = lane->is_drawn = false;
+            lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
         }
     }
+}
+
+/* Stops what robots do whose controllers have ended that. */
+static void give_up_refused(wh_mcs_t *mcs) {
+    for (size_t robot = 0; robot < WH_MCS_ROBOTS; ++robot) {
+        const bool is_refused = (mcs->stop.refused >> robot & 1U) != 0;
+        const uint32_t axes = is_refused ? wh_mcs_robot_axes(&mcs->layout->machine, robot) : 0;
+        for (size_t i = 0; i < mcs->lanes->count; ++i) {
+            wh_lane_t *lane = &mcs->lanes->of[i];
+            if (lane->is_busy && (lane->axes & axes) != 0) {
+                lane->refused = (int32_t)robot + 1;
+                lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
+            }
+        }
+    }
+    mcs->stop.refused = 0;
 }
 
 /* After slices have gone out: takes a STOP that has come, and the answer to the last slice. A slice that was
  * given up because of a STOP is not a separate reason. */
 static void take_end(wh_mcs_t *mcs, wh_status_t status) {
     uint32_t axes = 0;
+    give_up_refused(mcs);
     if (wh_mcs_stop_has_come(mcs)) {
         mcs->lanes->stopped_by = wh_mcs_take_stop(mcs, &axes);
-        give_up_segments(mcs, axes, WH_STATUS_STOPPED);
+        give_up_segments(mcs, axes, WH_STATUS_STOPPED, status == WH_OK);
         if (axes == WH_MCS_ALL) {
             wh_mcs_end_waits(mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
         }
     }
     if (status != WH_OK && axes != WH_MCS_ALL) {
-        give_up_segments(mcs, WH_MCS_ALL, status);
+        give_up_segments(mcs, WH_MCS_ALL, status, false);
         wh_mcs_note_refused(mcs, status);
         mcs->lanes->stopped_by = NULL;
     }
@@ -155,8 +206,8 @@ static bool play_charge(wh_mcs_t *mcs, wh_status_t *status) {
 static int advance_lanes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     mcs->stop.is_called = false;
-    wh_status_t status = mcs->stop.is_requested ? WH_OK : wh_mcs_resume(mcs);
-    bool is_over = status != WH_OK || mcs->stop.is_requested;
+    wh_status_t status = wh_mcs_is_told_to_stop(mcs) ? WH_OK : wh_mcs_resume(mcs);
+    bool is_over = status != WH_OK || wh_mcs_is_told_to_stop(mcs);
     while (!is_over) {
         const int64_t first = mcs->track.slice;
         const double begin = wh_clock_seconds();
@@ -299,6 +350,7 @@ static int start_segment(lua_State *L) {
     wh_mcs_begin_segment(L, mcs, &planned);
     lane->track = mcs->track;
     mcs->track = stands;
+    wh_mcs_check_segment(L, mcs, &planned.track.segment, lane->axes);
     lane->task = planned.task;
     lane->awaited = planned.awaited;
     lane->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & lane->grippers & mcs->state.sensors};
@@ -326,7 +378,12 @@ static int push_runs(lua_State *L) {
  * given up. */
 static int push_outcome(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_lane_t *lane = current_lane(mcs);
+    wh_lane_t *lane = current_lane(mcs);
+    const int32_t refused = lane->refused;
+    lane->refused = 0;
+    if (refused > 0) {
+        wh_mcs_raise_condition(L, mcs, (size_t)refused - 1);
+    }
     if (lane->status == WH_STATUS_STOPPED && mcs->lanes->stopped_by) {
         wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
     } else if (lane->status != WH_OK) {
@@ -344,7 +401,7 @@ static int push_outcome(lua_State *L) {
 /* native.drop_segment(): stops this task's segment. */
 static int drop_segment(lua_State *L) {
     wh_lane_t *lane = current_lane(wh_mcs_with_layout(L));
-    lane->is_busy = lane->is_drawn = false;
+    lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
     return 0;
 }
 

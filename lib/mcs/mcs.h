@@ -98,6 +98,15 @@ void wh_mcs_call(wh_mcs_t *mcs);
  * line is not played. If the job is not being played, nothing changes. */
 void wh_mcs_end_job(wh_mcs_t *mcs, int32_t job, wh_status_t status, const char *why);
 
+/* True if a robot's controller has ended its motion, which the next slice would tell. */
+bool wh_mcs_is_to_end(const wh_mcs_t *mcs);
+
+/* The job's motion stands still after this slice, while others go on; or it goes on, from there. */
+void wh_mcs_hold_job(wh_mcs_t *mcs, int32_t job, bool is_held);
+
+/* A STOP that comes next ends what stands still: nothing slows down. */
+void wh_mcs_stop_standing(wh_mcs_t *mcs);
+
 /* True while the job waits for something that another one has, and may not wait for ever. */
 bool wh_mcs_job_waits(const wh_mcs_t *mcs, int32_t job);
 
@@ -122,6 +131,9 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 
 /* The poses of the grippers at the axes of that slice, base_from_gripper; none without a cell. */
 void wh_mcs_see_grippers(const wh_mcs_t *mcs, wh_pose_t poses[WH_GRIPPERS]);
+
+/* "open", "shut" or "moving", from the door's switches. */
+const char *wh_mcs_door_word(const wh_mcs_t *mcs, size_t door);
 
 /* Room for the text of wh_mcs_name_mechanisms. */
 #define WH_MCS_MECHANISMS_BYTES ((WH_LAYOUT_ROBOTS + WH_GRIPPERS + WH_DOORS) * (WH_NAME_SIZE + 2))

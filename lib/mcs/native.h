@@ -53,9 +53,6 @@ void wh_mcs_start_faults(wh_mcs_t *mcs);
  * that fails. */
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
 
-/* "open", "shut" or "moving", from the door's switches. */
-const char *wh_mcs_door_word(const wh_mcs_t *mcs, size_t door);
-
 /* The cost of these slices in the instruction budget: a slice takes as much time as about twenty
  * instructions of Lua. */
 static inline uint64_t wh_mcs_steps(int64_t slices) {
@@ -102,6 +99,15 @@ void wh_mcs_push_sensor_error(lua_State *L, const wh_sensor_error_t *error);
 /* Pushes the path of a file that the script names: relative to the script's own folder. */
 const char *wh_mcs_push_path(lua_State *L, const wh_mcs_t *mcs, const char *name);
 
+/* If the robot is one that moves and may no longer do so, its motion ends after this slice. */
+void wh_mcs_end_refused_motion(wh_mcs_t *mcs, size_t robot);
+
+/* Raises the condition by which this robot's motion has ended. */
+void wh_mcs_raise_condition(lua_State *L, wh_mcs_t *mcs, size_t robot) __attribute__((noreturn));
+
+/* Raises the condition of a robot with one of these axes if the segment moves them and it may not. */
+void wh_mcs_check_segment(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment, uint32_t axes);
+
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_align_functions[];
 extern const luaL_Reg wh_mcs_arrival_functions[];
@@ -116,6 +122,7 @@ extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_clock_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
 extern const luaL_Reg wh_mcs_miss_functions[];
+extern const luaL_Reg wh_mcs_controller_functions[];
 extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_edge_functions[];

@@ -5,10 +5,12 @@
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "carrying.h"
 #include "clocks.h"
 #include "counted.h"
 #include "native.h"
 #include "playing.h"
+#include "ramp.h"
 
 /* Notes a slice that goes out: its faults, and one more slice of the running segment. */
 static void keep_slice(wh_mcs_t *mcs) {
@@ -36,6 +38,7 @@ static wh_status_t exchange_slice(wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->listeners.count; ++i) {
         mcs->listeners.of[i].hear(mcs->listeners.of[i].user, &mcs->command, &mcs->state);
     }
+    wh_mcs_look_at_controllers(mcs, mcs->command.seq);
     mcs->command.fault_count = 0;
     mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_KEEP};
     mcs->command.latch = (wh_latch_order_t){.kind = WH_LATCH_KEEP};
@@ -43,7 +46,15 @@ static wh_status_t exchange_slice(wh_mcs_t *mcs) {
 }
 
 bool wh_mcs_stop_has_come(const wh_mcs_t *mcs) {
-    return mcs->stop.is_requested || mcs->track.slice >= mcs->stop.at_slice;
+    return mcs->stop.is_requested || mcs->stop.refused != 0 || mcs->track.slice >= mcs->stop.at_slice;
+}
+
+void wh_mcs_stop_standing(wh_mcs_t *mcs) {
+    mcs->stop.stands = true;
+}
+
+bool wh_mcs_is_told_to_stop(const wh_mcs_t *mcs) {
+    return mcs->stop.is_requested || mcs->stop.refused != 0;
 }
 
 void wh_mcs_stop(wh_mcs_t *mcs) {
@@ -72,12 +83,30 @@ const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes) {
     if (!requested) {
         mcs->stop.at_slice = INT64_MAX;
     }
-    mcs->stop.is_requested = false;
+    mcs->stop.is_requested = mcs->stop.stands = false;
     return requested || mcs->stop.is_asked ? "by a request" : "by stop_in";
 }
 
+/* The record and a study's decisions then know of it. */
+static bool slows_down(wh_mcs_t *mcs) {
+    const int32_t stop = mcs->layout->stop;
+    const bool is_usual = stop == WH_LAYOUT_STOP_USUAL && mcs->wanted.slows_down;
+    const bool slows = stop == WH_LAYOUT_STOP_RAMP || is_usual;
+    if (slows) {
+        mcs->kept.unplayed = "a STOP that slows down";
+        wh_decisions_measured(mcs->wanted.decisions, mcs->kept.unplayed);
+    }
+    return slows;
+}
+
+/* By a STOP, or by the controller of the only robot that moves without tasks. */
 __attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
     uint32_t all = 0;
+    for (size_t robot = 0; robot < WH_MCS_ROBOTS; ++robot) {
+        if ((mcs->stop.refused >> robot & 1U) != 0) {
+            wh_mcs_raise_condition(L, mcs, robot);
+        }
+    }
     wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, wh_mcs_take_stop(mcs, &all));
 }
 
@@ -152,30 +181,66 @@ wh_status_t wh_mcs_resume(wh_mcs_t *mcs) {
     return status;
 }
 
+bool wh_mcs_begin_ramp(wh_mcs_t *mcs, wh_ramp_t *ramp, const wh_track_t *track) {
+    return slows_down(mcs) && wh_ramp_begin(ramp, track, wh_carrying_matters(mcs->layout));
+}
+
+/* A STOP has come between two slices: what moves goes on along its way until it stands. A controller that
+ * refuses motion meanwhile ends that. */
+static void slow_down(lua_State *L, wh_mcs_t *mcs) {
+    wh_ramp_t ramp;
+    if (mcs->stop.refused != 0 || mcs->stop.stands || !wh_mcs_begin_ramp(mcs, &ramp, &mcs->track)) {
+        return;
+    }
+    const int64_t first = mcs->track.slice;
+    wh_real_t before[WH_AXES];
+    memcpy(before, mcs->track.axes, sizeof before);
+    while (mcs->stop.refused == 0 && !wh_sandbox_stopping(mcs->sandbox) && wh_ramp_next(&ramp, &mcs->track)) {
+        const wh_status_t status = wh_mcs_play_slice(mcs, before);
+        if (status != WH_OK) {
+            refuse_slice(L, mcs, status);
+        }
+        memcpy(before, mcs->track.axes, sizeof before);
+    }
+    wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - first));
+}
+
+/* Ends the segment if a STOP has come; first it slows down if it `moves`. */
+static void heed_stop(lua_State *L, wh_mcs_t *mcs, bool moves) {
+    if (wh_mcs_stop_has_come(mcs) && moves) {
+        slow_down(L, mcs);
+    }
+    if (wh_mcs_stop_has_come(mcs)) {
+        raise_stopped(L, mcs);
+    }
+}
+
+static bool is_refused(const wh_mcs_t *mcs, wh_status_t status) {
+    return status != WH_OK && !(status == WH_STATUS_STOPPED && wh_mcs_is_told_to_stop(mcs));
+}
+
 static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     wh_status_t status = WH_OK;
     wh_track_state_t state = WH_TRACK_MOVING;
-    if (mcs->stop.is_requested) {
+    if (wh_mcs_is_told_to_stop(mcs)) {
         raise_stopped(L, mcs);
     }
     status = wh_mcs_resume(mcs);
-    if (status == WH_STATUS_STOPPED && mcs->stop.is_requested) {
-        raise_stopped(L, mcs);
+    if (is_refused(mcs, status)) {
+        refuse_slice(L, mcs, status);
     }
     if (status != WH_OK) {
-        refuse_slice(L, mcs, status);
+        raise_stopped(L, mcs);
     }
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;
         state = play_portion(mcs, &status);
         /* Charge first: a link that gave up waiting because of a stop also returns a status. */
         wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
-        if (status != WH_OK && !(status == WH_STATUS_STOPPED && mcs->stop.is_requested)) {
+        if (is_refused(mcs, status)) {
             refuse_slice(L, mcs, status);
         }
-        if (wh_mcs_stop_has_come(mcs)) {
-            raise_stopped(L, mcs);
-        }
+        heed_stop(L, mcs, status == WH_OK && state == WH_TRACK_MOVING);
     }
     return state;
 }
@@ -214,6 +279,7 @@ static int play_segment(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     wh_mcs_begin_segment(L, mcs, &planned);
+    wh_mcs_check_segment(L, mcs, &planned.track.segment, mcs->running.axes);
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
     mcs->running.awaited = planned.awaited;

@@ -39,9 +39,20 @@ wh_status_t wh_mcs_resume(wh_mcs_t *mcs);
 
 bool wh_mcs_stop_has_come(const wh_mcs_t *mcs);
 
+/* True for a STOP that does not come at a slice, or the end of a motion by its robot's controller. */
+bool wh_mcs_is_told_to_stop(const wh_mcs_t *mcs);
+
 /* Takes the STOP that has come. Returns its sender, a constant text, and writes the axes; commands that
  * have one of them end. */
 const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes);
+
+/* Begins to slow down what a track moves. False: it stands at once, for so it is in this cell, or nothing
+ * moves. */
+bool wh_mcs_begin_ramp(wh_mcs_t *mcs, wh_ramp_t *ramp, const wh_track_t *track);
+
+/* Stops a lane's segment: it slows down, if it is one that moves in a cell where that is so; else it ends at
+ * once. `after`: what ends its job then; WH_OK: the segment was given up. */
+void wh_mcs_stop_lane(wh_mcs_t *mcs, wh_lane_t *lane, wh_status_t after);
 
 /* Ends the commands of waiting tasks with this status, for the reason `why`, a constant text. */
 void wh_mcs_end_waits(wh_mcs_t *mcs, wh_status_t status, const char *why);

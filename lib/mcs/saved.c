@@ -215,14 +215,16 @@ static bool are_ports_otherwise(lua_State *L, const wh_mcs_t *mcs, int saved) {
 }
 
 /* native.differs(saved): true if a slice was played since, a fault is on its way, or an armed error, a held
- * command or a carrier has come or gone. */
+ * command or a carrier has come or gone, or a controller is otherwise. */
 static int differs_from_saved(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
                            saved->command.fault_count != mcs->command.fault_count ||
                            is_armed_otherwise(&saved->armed, &mcs->armed) || is_held_otherwise(saved, mcs) ||
-                           are_ports_otherwise(L, mcs, 1));
+                           are_ports_otherwise(L, mcs, 1) ||
+                           memcmp(saved->armed.controllers, mcs->armed.controllers,
+                                  sizeof saved->armed.controllers) != 0);
     return 1;
 }
 

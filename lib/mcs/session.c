@@ -52,6 +52,8 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
         return refuse_session(session, result.message);
     }
     session->mcs.wanted.refuses_unread = true;
+    session->mcs.wanted.is_of_hosts = options->is_of_hosts;
+    session->mcs.wanted.slows_down = options->slows_down;
     session->mcs.wanted.partners = options->partners;
     session->mcs.wanted.listener = options->listener;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result)) {

@@ -43,6 +43,8 @@ typedef struct {
     wh_mcs_partners_t partners; /* see mcs/partners.h */
     wh_mcs_listener_t listener; /* likewise, for each run of the session */
     bool keeps_all;             /* the record forgets no command */
+    bool is_of_hosts;           /* its lines come from hosts: see wh_mcs_wanted_t; */
+    bool slows_down;            /* likewise, what a STOP does */
     wh_session_report_t *report;
     void *report_user;
     wh_session_untried_t *untried;

@@ -11,7 +11,9 @@
 #include "../trial/decisions.h"
 #include "../trial/origins.h"
 #include "../trial/trial_cell.h"
+#include "controller.h"
 #include "partners.h"
+#include "ramp.h"
 #include "rehearsal.h"
 
 /* The listeners for slices: decisions, recorder, origins, the collected scan, the data of STATUS, a collision
@@ -115,10 +117,14 @@ typedef struct {
     wh_vacuum_watch_t watch;
     wh_track_state_t state; /* how the last segment ended */
     wh_status_t status;     /* not WH_OK: it was given up */
+    int32_t refused;        /* the robot, from 1, whose controller ended it; 0: none */
     wh_task_t task;
     int32_t job;          /* the job whose lines the task plays; 0: none */
     bool waits;           /* its command waits for something that another one has */
     bool is_patient;      /* it waits without a limit */
+    bool is_held;         /* its segment stands still for now */
+    wh_ramp_t ramp;       /* its segment was stopped and slows down; then it ends with */
+    wh_status_t after;    /* this for its job, for the reason told_why; WH_OK: with STOPPED */
     wh_status_t told;     /* not WH_OK: the job, or the waiting command, must end with this, */
     const char *told_why; /* for this reason, a constant text */
     /* While another task goes on: */
@@ -186,6 +192,8 @@ typedef struct {
 typedef struct {
     bool refuses_unread;     /* the cell is not connected while a parameter is unread */
     bool is_file;            /* `script` is a file that is run, not a layout */
+    bool is_of_hosts;        /* lines come from hosts, not from an operator or a script */
+    bool slows_down;         /* a STOP does, unless the layout says otherwise: see ramp.h */
     bool keeps_segments;     /* collect the played segments, for --segments */
     wh_flow_keep_t keeps;    /* of a flow beside its sums */
     bool without_collisions; /* no collision check, whatever the layout says */
@@ -214,6 +222,9 @@ typedef struct {
     bool is_asked;       /* that STOP came from an operator, not from stop_in */
     bool is_by_link;     /* the link has answered a slice with WH_STATUS_STOPPED */
     bool is_called;      /* a job has come, or one must end: Lua goes on after this slice */
+    uint32_t refused;    /* bits: robots whose controllers end their motion */
+    bool stands;         /* what the STOP ends stood still already */
+    bool was_cut;        /* the last error of a motion was such an end */
 } wh_mcs_stop_t;
 
 /* The segment that is planned or runs, and its command, while there are no tasks. */
@@ -227,13 +238,14 @@ typedef struct {
     char word[WH_MCS_WORD]; /* the script's last word, which an error outside of a command names */
 } wh_mcs_running_t;
 
-/* Faults, and errors on purpose. */
+/* Faults, errors on purpose, and what robots' own controllers have, which faults change. */
 typedef struct {
     wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has or will have them */
     size_t fault_count;
     wh_status_t alarms[WH_MCS_ALARMS]; /* the errors that wait for a command; WH_OK: a free place */
     int32_t alarm_jobs[WH_MCS_ALARMS]; /* for the job of this number; 0: for any */
     bool alarm_tried[WH_MCS_ALARMS];   /* something broke for it, and its command ended otherwise */
+    wh_mcs_controller_t controllers[WH_MCS_ROBOTS];
 } wh_mcs_armed_t;
 
 /* Measurements of wafers' edges and of stations, from states. */

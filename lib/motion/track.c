@@ -326,49 +326,70 @@ static void switch_valves(wh_track_t *track) {
     }
 }
 
-static WH_OUT_OF_LINE void move_along_carriers_line(wh_track_t *track) {
+static WH_OUT_OF_LINE void place_on_carriers_line(const wh_track_t *track, wh_real_t t, wh_real_t axes[]) {
     size_t first = 0;
     const wh_carrier_t *carrier = arm_of(track->machine, &track->segment, &first);
-    const wh_chain_line_t *line = &track->plan.chain_line;
-    const wh_real_t t = segment_time(track, wh_chain_line_duration(line));
-    carrier->line_at(carrier, line, t, &track->axes[first]);
+    carrier->line_at(carrier, &track->plan.chain_line, t, &axes[first]);
 }
 
-static void move_along_line(wh_track_t *track) {
+static void place_on_line(const wh_track_t *track, wh_real_t t, wh_real_t axes[]) {
     if (track->machine->carrier) {
-        move_along_carriers_line(track);
+        place_on_carriers_line(track, t, axes);
     } else {
-        wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
+        wh_line_at(&track->plan.line, t, axes);
     }
 }
 
-static WH_OUT_OF_LINE void move_along_way(wh_track_t *track) {
+static WH_OUT_OF_LINE void place_on_way(const wh_track_t *track, wh_real_t t, wh_real_t axes[]) {
     size_t first;
     (void)wh_machine_carrier(track->machine, robot_of(track->machine, &track->segment), &first);
-    track->ways->at(&track->plan.way, segment_time(track, wh_way_duration(&track->plan.way)),
-                    &track->axes[first]);
+    track->ways->at(&track->plan.way, t, &axes[first]);
 }
 
-static WH_OUT_OF_LINE void move_along_via(wh_track_t *track) {
+static WH_OUT_OF_LINE void place_on_via(const wh_track_t *track, wh_real_t t, wh_real_t axes[]) {
     size_t first;
     (void)wh_machine_carrier(track->machine, robot_of(track->machine, &track->segment), &first);
-    track->vias->at(&track->plan.via, segment_time(track, wh_via_duration(&track->plan.via)),
-                    &track->axes[first]);
+    track->vias->at(&track->plan.via, t, &axes[first]);
+}
+
+wh_real_t wh_track_seconds(const wh_track_t *track) {
+    switch (track->segment.kind) {
+    case WH_SEGMENT_AXES:
+        return wh_move_duration(&track->plan.move);
+    case WH_SEGMENT_LINE:
+        return track->machine->carrier ? wh_chain_line_duration(&track->plan.chain_line)
+                                       : wh_line_duration(&track->plan.line);
+    case WH_SEGMENT_WAY:
+        return wh_way_duration(&track->plan.way);
+    case WH_SEGMENT_VIA:
+        return wh_via_duration(&track->plan.via);
+    case WH_SEGMENT_VALVES:
+    case WH_SEGMENT_DWELL:
+    case WH_SEGMENT_SENSOR:
+        break;
+    }
+    return 0;
+}
+
+void wh_track_place(const wh_track_t *track, wh_real_t seconds, wh_real_t axes[WH_AXES]) {
+    const wh_segment_kind_t kind = track->segment.kind;
+    if (kind == WH_SEGMENT_AXES) {
+        wh_move_at(&track->plan.move, seconds, axes);
+    } else if (kind == WH_SEGMENT_LINE) {
+        place_on_line(track, seconds, axes);
+    } else if (kind == WH_SEGMENT_WAY) {
+        place_on_way(track, seconds, axes);
+    } else if (kind == WH_SEGMENT_VIA) {
+        place_on_via(track, seconds, axes);
+    }
 }
 
 /* Sets axes or valves for the slice. A segment that only waits changes nothing. */
 static void apply(wh_track_t *track) {
-    const wh_segment_kind_t kind = track->segment.kind;
-    if (kind == WH_SEGMENT_AXES) {
-        wh_move_at(&track->plan.move, segment_time(track, wh_move_duration(&track->plan.move)), track->axes);
-    } else if (kind == WH_SEGMENT_LINE) {
-        move_along_line(track);
-    } else if (kind == WH_SEGMENT_WAY) {
-        move_along_way(track);
-    } else if (kind == WH_SEGMENT_VIA) {
-        move_along_via(track);
-    } else if (kind == WH_SEGMENT_VALVES) {
+    if (track->segment.kind == WH_SEGMENT_VALVES) {
         switch_valves(track);
+    } else {
+        wh_track_place(track, segment_time(track, wh_track_seconds(track)), track->axes);
     }
 }
 

@@ -142,6 +142,16 @@ wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) WH_SYMBOL(wh
  * without playing it. `slice` stays. One that was never initialised stays as it is. */
 void wh_track_skip(wh_track_t *track) WH_SYMBOL(wh_track_skip);
 
+/* How long the running segment moves, s, without the rounding up to slices; 0: it moves no axis. The track
+ * must have begun a segment, or none. */
+wh_real_t wh_track_seconds(const wh_track_t *track) WH_SYMBOL(wh_track_seconds);
+
+/* Writes the axes that the running segment moves as they are `seconds` after its begin: a way to go along it
+ * at another pace, such as to slow down. Before its begin they are as they were, behind its end as there. The
+ * track stays, and of the others in `axes` none is written. Cost: as of wh_track_next. */
+void wh_track_place(const wh_track_t *track, wh_real_t seconds, wh_real_t axes[WH_AXES])
+    WH_SYMBOL(wh_track_place);
+
 WH_HEADER_END
 
 #endif

@@ -285,7 +285,7 @@ static void put_target(json_t *object, const char *key, bool is_its, const char 
     wh_json_put(object, key, is_its ? wh_json_text(name) : json_null());
 }
 
-/* The door, the station or the beam that a fault concerns. */
+/* The door, the station, the beam or the robot that a fault concerns. */
 static void put_place(json_t *object, const wh_layout_t *layout, const wh_fault_t *from) {
     if (wh_fault_is_of_door(from->kind)) {
         put_target(object, "door", true, layout->door_list[from->target].name);
@@ -296,6 +296,8 @@ static void put_place(json_t *object, const wh_layout_t *layout, const wh_fault_
         const int32_t first = wh_layout_beams_at(layout, (size_t)station).first;
         put_target(object, "station", true, layout->stations[station].name);
         (void)wh_json_set(object, "beam %d", from->target - first + 1);
+    } else if (wh_fault_is_of_controller(from->kind)) {
+        put_target(object, "robot", true, layout->robots[from->target].name);
     }
 }
 
@@ -306,7 +308,7 @@ static json_t *fault(const void *subject, size_t i) {
     const bool endless = from->until == WH_FAULT_FOREVER;
     const bool of_wafer = wh_fault_is_of_wafer(from->kind);
     const bool of_place = wh_fault_is_of_door(from->kind) || wh_fault_is_of_beam(from->kind) ||
-                          wh_fault_is_of_station(from->kind);
+                          wh_fault_is_of_station(from->kind) || wh_fault_is_of_controller(from->kind);
     const bool of_gripper = from->target != WH_NONE && !of_wafer && !of_place;
     json_t *object = wh_json_set(json_object(), "kind %s", wh_fault_name(from->kind));
     put_target(object, "gripper", of_gripper, of_gripper ? layout->grippers[from->target].name : "");

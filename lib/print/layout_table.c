@@ -337,6 +337,9 @@ static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault)
     if (wh_fault_is_of_station(fault->kind)) {
         return layout->stations[fault->target].name;
     }
+    if (wh_fault_is_of_controller(fault->kind)) {
+        return layout->robot_count > 0 ? layout->robots[fault->target].name : "robot";
+    }
     return wh_fault_is_of_wafer(fault->kind) ? layout->wafers[fault->target].name
                                              : layout->grippers[fault->target].name;
 }

@@ -74,11 +74,15 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
 /* ------------------------------------------------------------------------------------------------- faults */
 
 static wh_fault_kind_t read_kind(wh_reader_t *reader) {
-    const char *names[WH_FAULT_WAFER_PLACED + 1] = {NULL};
-    for (int i = 0; i < WH_FAULT_WAFER_PLACED; ++i) {
-        names[i] = wh_fault_name((wh_fault_kind_t)i);
+    const char *names[WH_FAULT_KINDS] = {NULL};
+    size_t count = 0;
+    for (int i = 0; i < WH_FAULT_KINDS; ++i) {
+        if (i != WH_FAULT_WAFER_PLACED) {
+            names[count++] = wh_fault_name((wh_fault_kind_t)i);
+        }
     }
-    const int kind = wh_reader_choice(reader, "kind", WH_NONE, names);
+    const int chosen = wh_reader_choice(reader, "kind", WH_NONE, names);
+    const int kind = chosen >= WH_FAULT_WAFER_PLACED ? chosen + 1 : chosen;
     if (kind == WH_NONE) {
         wh_reader_refuse(reader, "kind", NULL, "the kind of a fault, such as \"%s\"", names[0]);
     }
@@ -219,6 +223,22 @@ static bool is_of_edge_sensor(wh_fault_kind_t kind) {
     return kind == WH_FAULT_EDGE_SENSOR_STUCK || kind == WH_FAULT_EDGE_SENSOR_LATE;
 }
 
+/* The only robot, or one of several by its name. */
+static int32_t read_robot(wh_reader_t *reader, const wh_layout_t *layout) {
+    const char *only = layout->robot_count == 1 ? layout->robots[0].name : NULL;
+    return wh_layout_read_name(reader, layout, "robot", only, wh_layout_find_robot,
+                               "the name of a robot of this layout");
+}
+
+/* The wafer that another one lies on, or the step of a handshake. */
+static void read_other(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_t *fault) {
+    if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
+        fault->other = read_onto(reader, layout, fault->target);
+    } else if (is_of_handshake(fault->kind)) {
+        fault->other = read_step(reader, layout, fault->target);
+    }
+}
+
 static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_t *fault) {
     if (wh_fault_is_of_wafer(fault->kind)) {
         fault->target = read_wafer(reader, layout, "wafer");
@@ -229,6 +249,8 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
         fault->target = read_beam(reader, layout);
     } else if (wh_fault_is_of_station(fault->kind)) {
         fault->target = read_timed_station(reader, layout);
+    } else if (wh_fault_is_of_controller(fault->kind)) {
+        fault->target = read_robot(reader, layout);
     } else if (is_of_edge_sensor(fault->kind)) {
         fault->target = read_edge_sensor(reader, layout);
     } else if (is_of_probe(fault->kind)) {
@@ -237,11 +259,7 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
         fault->target =
             wh_layout_read_gripper_name(reader, layout, "gripper", "the name of a gripper of this layout");
     }
-    if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
-        fault->other = read_onto(reader, layout, fault->target);
-    } else if (is_of_handshake(fault->kind)) {
-        fault->other = read_step(reader, layout, fault->target);
-    }
+    read_other(reader, layout, fault);
 }
 
 /* A fault can only break a part that the grip has. */

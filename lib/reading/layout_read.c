@@ -225,9 +225,16 @@ static void read_mapping(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_leave(reader);
 }
 
+static void read_stop(wh_reader_t *reader, wh_layout_t *layout) {
+    if (wh_reader_has(reader, "stop")) {
+        layout->stop = (int32_t)wh_reader_apart(reader, "stop") + (int32_t)WH_LAYOUT_STOP_RAMP;
+    }
+}
+
 static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
     layout->grasp = wh_grasp_config_default();
     wh_reader_scalars(reader, layout);
+    read_stop(reader, layout);
     read_wafer(reader, layout);
     read_tolerance(reader, layout);
     read_near(reader, layout);

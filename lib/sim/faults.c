@@ -6,12 +6,13 @@
 
 const char *wh_fault_name(wh_fault_kind_t kind) {
     static const char *const names[WH_FAULT_KINDS] = {
-        "no_vacuum",     "slow_vacuum",   "sensor_on",         "sensor_off",       "leak",
-        "valve_stuck",   "axis_stopped",  "command_lost",      "wafer_missing",    "wafer_doubled",
-        "wafer_crossed", "wafer_shifted", "wafer_tilted",      "plunger_stuck",    "plunger_slow",
-        "door_stuck",    "door_slow",     "beam_dark",         "beam_lit",         "beam_late",
-        "probe_closed",  "probe_open",    "edge_sensor_stuck", "edge_sensor_late", "station_stuck",
-        "station_slow",  "e84_stuck",     "e84_late",          "wafer_placed"};
+        "no_vacuum",      "slow_vacuum",   "sensor_on",         "sensor_off",       "leak",
+        "valve_stuck",    "axis_stopped",  "command_lost",      "wafer_missing",    "wafer_doubled",
+        "wafer_crossed",  "wafer_shifted", "wafer_tilted",      "plunger_stuck",    "plunger_slow",
+        "door_stuck",     "door_slow",     "beam_dark",         "beam_lit",         "beam_late",
+        "probe_closed",   "probe_open",    "edge_sensor_stuck", "edge_sensor_late", "station_stuck",
+        "station_slow",   "e84_stuck",     "e84_late",          "wafer_placed",     "power_lost",
+        "emergency_stop", "servo_error"};
     return (unsigned)kind < WH_FAULT_KINDS ? names[kind] : "unknown";
 }
 
@@ -29,6 +30,10 @@ bool wh_fault_is_of_beam(wh_fault_kind_t kind) {
 
 bool wh_fault_is_of_station(wh_fault_kind_t kind) {
     return kind >= WH_FAULT_STATION_STUCK && kind <= WH_FAULT_E84_LATE;
+}
+
+bool wh_fault_is_of_controller(wh_fault_kind_t kind) {
+    return kind >= WH_FAULT_POWER_LOST && kind <= WH_FAULT_SERVO_ERROR;
 }
 
 wh_real_t wh_fault_most(wh_fault_kind_t kind) {
@@ -66,11 +71,12 @@ wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, 
 }
 
 static size_t count_targets(wh_fault_kind_t kind, size_t gripper_count, size_t wafer_count) {
-    return wh_fault_is_of_wafer(kind)     ? wafer_count
-           : wh_fault_is_of_door(kind)    ? WH_DOORS
-           : wh_fault_is_of_beam(kind)    ? WH_BEAMS
-           : wh_fault_is_of_station(kind) ? WH_FAULT_STATIONS
-                                          : gripper_count;
+    return wh_fault_is_of_wafer(kind)        ? wafer_count
+           : wh_fault_is_of_door(kind)       ? WH_DOORS
+           : wh_fault_is_of_beam(kind)       ? WH_BEAMS
+           : wh_fault_is_of_station(kind)    ? WH_FAULT_STATIONS
+           : wh_fault_is_of_controller(kind) ? WH_FAULT_ROBOTS
+                                             : gripper_count;
 }
 
 static bool other_fits(const wh_fault_t *fault, size_t wafer_count) {

@@ -27,6 +27,7 @@
  *   E84_STUCK       a step of a load port's handshake, `other` from 1 to 5, stands, likewise
  *   E84_LATE        it takes `value` s longer
  *   WAFER_PLACED    the wafer goes to `offset` in base, and the fault is over: a carrier brings or takes it
+ *   POWER_LOST, EMERGENCY_STOP, SERVO_ERROR  of a robot's own controller; the simulator has no part in them
  *
  * The wafer, or the one that it is doubled onto, may be held when its fault is due to begin. Then the fault
  * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
@@ -75,8 +76,9 @@ WH_REFUSE_PACKING(faults);
 #define WH_PLUNGER_FAST 10000
 /* The most beams of a cell (latching.h). */
 #define WH_BEAMS 16
-/* The most stations that a fault can name. */
+/* The most stations and robots that a fault can name. */
 #define WH_FAULT_STATIONS 1000
+#define WH_FAULT_ROBOTS (WH_AXES / WH_ROBOT_AXES)
 /* The steps of a load port's handshake. */
 #define WH_FAULT_E84_STEPS 5
 /* A fault that lasts until it is cleared. */
@@ -111,14 +113,17 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_STATION_SLOW,
     WH_FAULT_E84_STUCK,
     WH_FAULT_E84_LATE,
-    WH_FAULT_WAFER_PLACED /* the last one: no fault on purpose */
+    WH_FAULT_WAFER_PLACED, /* no fault on purpose */
+    WH_FAULT_POWER_LOST,   /* faults of controllers, from here on */
+    WH_FAULT_EMERGENCY_STOP,
+    WH_FAULT_SERVO_ERROR
 } wh_fault_kind_t;
 
-#define WH_FAULT_KINDS 29
+#define WH_FAULT_KINDS 32
 
 typedef struct {
     wh_fault_kind_t kind;
-    int32_t target; /* gripper, wafer, door, beam or station; WH_NONE for COMMAND_LOST */
+    int32_t target; /* gripper, wafer, door, beam, station or robot; WH_NONE for COMMAND_LOST */
     int32_t other;  /* DOUBLED: the wafer underneath; E84_*: the step; otherwise WH_NONE */
     /* SLOW_VACUUM and E84_LATE: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and
      * DOOR_SLOW: mm/s, 0 to 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; STATION_SLOW: 0 to
@@ -159,8 +164,8 @@ typedef struct {
     uint32_t armed, cleared;
 } wh_fault_changes_t;
 
-/* The kind's name as layouts and scripts spell it: no_vacuum to e84_late, or wafer_placed, which these have
- * not, or "unknown". Never null. */
+/* The kind's name as layouts and scripts spell it: no_vacuum to servo_error; wafer_placed, which these have
+ * not; or "unknown". Never null. */
 const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
 /* True if the kind is about a wafer. */
@@ -175,12 +180,15 @@ bool wh_fault_is_of_beam(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_beam);
 /* True if the kind is about what goes on in a station by itself. */
 bool wh_fault_is_of_station(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_station);
 
+/* True if the kind is about a robot's own controller. */
+bool wh_fault_is_of_controller(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_controller);
+
 /* The largest `value` that a fault of this kind may have; 0: the kind has none. */
 wh_real_t wh_fault_most(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_most);
 
 /* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
- * is a gripper, a wafer, a door, a beam or a station; COMMAND_LOST has none (WH_NONE replaces it). `value`
- * counts for kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the
+ * is a gripper, a wafer, a door, a beam, a station or a robot; COMMAND_LOST has none (WH_NONE replaces it).
+ * `value` counts for kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the
  * identity; that of WAFER_MISSING points 100 m down, out of every cell. The caller sets the other values that
  * the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED and
  * _PLACED, `other` of E84_*.
@@ -192,7 +200,8 @@ wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, 
     WH_SYMBOL(wh_fault_make);
 
 /* Returns WH_OK, or the reason why a cell with these counts, WH_DOORS doors, WH_BEAMS beams and
- * WH_FAULT_STATIONS stations cannot have the fault. WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or
+ * WH_FAULT_STATIONS stations and WH_FAULT_ROBOTS robots cannot have the fault. WH_STATUS_NULL_ARGUMENT;
+ * WH_STATUS_NOT_FINITE or
  * WH_STATUS_NOT_A_ROTATION for an offset that wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind,
  * target, other, from or until, for a `value` out of its range or NaN, and for an offset beyond
  * WH_FAULT_REACH, or other than the identity if the kind is not about a wafer. A fault that never acts

@@ -130,7 +130,8 @@ static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_ki
         const wh_fault_t *fault = &simulator->physics.faults.slots[i].fault;
         const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
         const bool of_gripper = !of_wafer && !wh_fault_is_of_door(fault->kind) &&
-                                !wh_fault_is_of_beam(fault->kind) && !wh_fault_is_of_station(fault->kind);
+                                !wh_fault_is_of_beam(fault->kind) && !wh_fault_is_of_station(fault->kind) &&
+                                !wh_fault_is_of_controller(fault->kind);
         wh_event_t *event = add_event(simulator, kind, of_wafer ? fault->target : WH_NONE,
                                       of_gripper ? fault->target : WH_NONE);
         if (event) {

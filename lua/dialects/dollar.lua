@@ -304,6 +304,32 @@ return {
     RFND = { does = "LOCAL", run = function(request)
       return found[request.arguments[1] or ""] or host.refuse("BAD_ARGUMENT", request.arguments[1])
     end, answer = function(_, result) return result.answer end },
+    CCTL = { does = "CONTROLLER", run = function(request)
+      local name, value = request.arguments[1] or "", request.arguments[2] or ""
+      if not name:find("^%a+$") or not value:find("^%a+$") then
+        host.refuse("BAD_ARGUMENT", name .. "," .. value)
+      end
+      return ("CONTROLLER %s=%s"):format(name, value)
+    end },
+    CSPD = { does = "CONTROLLER", run = function(request)
+      local percent = tonumber(request.arguments[1]) or host.refuse("BAD_ARGUMENT", request.arguments[1])
+      return ("CONTROLLER override=%.17g"):format(percent / 100)
+    end },
+    RPMP = { does = "PORT_MAP", run = at_station("PORT_MAP"), answer = function(request, result)
+      if not result.values.codes then
+        host.refuse("NOT_MAPPED", request.arguments[1])
+      end
+      keep_map(request, result)
+      return maps[request.arguments[1] or ""]
+    end },
+    RPRT = { does = "STATUS", answer = function(request, result)
+      local name, list = host.station(request.arguments[1] or ""), {}
+      for place, part in ipairs({ "carrier", "does", "is", "left" }) do
+        list[place] = field(result.status[name .. "." .. part] or "")
+      end
+      return table.concat(list, ",")
+    end },
+    RCTL = { does = "CONTROLLER", answer = told },
     RPOS = { does = "STATUS", answer = function(_, result) return position(result) end },
     RSTS = { does = "STATUS", answer = function(_, result)
       return ("%s,%s,%s"):format(result.state, host.code(result.status.error) or "0000", arms(result))
@@ -377,6 +403,7 @@ return {
     WRONG_PRESSURE = "0910", BOTH_OPEN = "0911", DOOR_OPEN = "0912",
     PORT_NOT_OPEN = "0913", PORT_ENTERED = "0914", NO_CARRIER = "0915", CARRIER_THERE = "0916",
     HANDSHAKE_TIMEOUT = "0917",
+    NO_POWER = "0920", BRAKES_SET = "0921", EMERGENCY_STOP = "0922", SERVO_ERROR = "0923", SOFT_LIMIT = "0924", WRONG_MODE = "0925",
   },
   other_error = "0999",
   states = { idle = "0", running = "1", held = "2" },

@@ -3,7 +3,8 @@
 -- ports share one state: `status` asks and stops, `motion` also moves. Motions need power (`hp 1`) and `attach 1`; both go when the
 -- client at `motion` goes. Joints are 1 z, 2 shoulder, 3 elbow, 4 wrist, 5 gripper, 6 rail; mm and degrees. A location names the
 -- nest that is nearest to it. A robot without one of the joints 1 to 4 has no answer to `wherej`: -2800. A tester may tell "estop on",
--- "hand elbow 170" (moved by hand, or back without a value) and "overshoot elbow 134.062", which homing mends.
+-- "hand elbow 170" (moved by hand, or back without a value) and "overshoot elbow 134.062", beyond its travel, which homing mends.
+-- Power, emergency stop and overshoot are the state of the robot's controller, `now.controller`.
 
 local AXES = { "z", "theta", "forearm", "yaw", "gripper", "rail" }
 local JOINTS = { z = 1, shoulder = 2, elbow = 3, wrist = 4, gripper = 5, rail = 6 }
@@ -12,9 +13,9 @@ local NEAR = 25       -- mm: a location farther from every nest is none
 local ELBOWS = { "right", "left" }
 local TURNED = 0x1000 -- of a configuration: the wrist within half a turn
 
-local power, attached, estop = false, false, false
+local attached = false
 local payload, monitor, selected = 0, 100, 1
-local shown = {}       -- joints whose encoders tell something else than they stand at: { value, mended by homing }
+local shown = {}       -- joints that were moved by hand: what their encoders tell
 local cut_short = false -- something was stopped or has failed: the arm comes out of a nest before it picks or places
 local free = {}        -- joints that can be moved by hand
 local profiles, locations, signals, parameters, parameter_count = {}, {}, {}, {}, 0
@@ -86,7 +87,7 @@ end
 local function joints(now)
   local list = {}
   for place, name in ipairs(AXES) do
-    list[place] = shown[place] and shown[place][1] or name == "gripper" and width + 0.0 or now.position[name]
+    list[place] = shown[place] or name == "gripper" and width + 0.0 or now.position[name]
     if not list[place] and name ~= "rail" then
       fail(-2800, ("Warning Parameter Mismatch: the robot has no joint %d (expected one with %s)"):format(place, name))
     end
@@ -122,25 +123,38 @@ end
 
 -------------------------------------------------------------------------------------------------------------- may it move
 
-local function check_power(request)
-  if estop then
+local function is_on(now)
+  return now.controller.power == "on"
+end
+
+local function check_power(request, now)
+  if now.controller.estop == "on" then
     fail(-1028, "Hard E-Stop")
-  elseif not power then
+  elseif not is_on(now) then
     fail(-1046, "Power not enabled")
   elseif request.port ~= "motion" or not attached then
     fail(-1009, "No robot attached")
   end
 end
 
-local function check_joints()
+local function check_hands()
   for place, at in pairs(shown) do
-    fail(-1012, ("Joint out-of-range: joint %d at %s"):format(place, text_of(at[1] + 0.0)))
+    fail(-1012, ("Joint out-of-range: joint %d at %s"):format(place, text_of(at + 0.0)))
   end
 end
 
-local function check_motion(request)
-  check_power(request)
-  check_joints()
+local function check_joints(now)
+  check_hands()
+  for place, name in ipairs(AXES) do
+    if name == now.controller.exceeded then
+      fail(-1012, ("Joint out-of-range: joint %d at %s"):format(place, text_of(now.position[name] + 0.0)))
+    end
+  end
+end
+
+local function check_motion(request, now)
+  check_power(request, now)
+  check_joints(now)
 end
 
 -- The parts of the limits of a profile.
@@ -222,15 +236,15 @@ end
 -- The lines of a motion that runs in the background.
 local function motion(make)
   return { does = "MOVE LINE", when = "at once", queue = 1, run = function(request, now)
-    check_motion(request)
+    check_motion(request, now)
     return make(request.words, now)
   end }
 end
 
 -- A pick or a place at a location: the nest that is nearest to it.
 local function transfer(word)
-  return function(request)
-    check_motion(request)
+  return function(request, now)
+    check_motion(request, now)
     local at = location(request.words[1])
     local point = point_of(at)
     local nest = host.nearest(point[1], point[2], point[3])
@@ -282,20 +296,23 @@ local commands = {
       fail(-706, "Value too large: only PC mode, 0, is simulated")
     end
   end),
-  hp = value(function() return power and 1 or 0 end, function()
-    if estop then
+  hp = ask(function(_, now) return is_on(now) and "1" or "0" end),
+  ["hp 1"] = { does = "CONTROLLER", run = function(_, now)
+    if now.controller.estop == "on" then
       fail(-1028, "Hard E-Stop")
     end
-    power = true
-  end),
-  ["hp 0"] = { does = "STOP" }, -- and decode has switched it off
+    return "CONTROLLER power=on"
+  end },
+  ["hp 0"] = { does = "CONTROLLER", run = function() return "CONTROLLER power=off" end },
   attach = value(function() return attached and -1 or 0 end, function(words, request)
     if request.port ~= "motion" then
       fail(-1009, "No robot attached")
     end
     attached = whole(words[1], 0, 1) == 1
   end),
-  sysstate = ask(function() return text_of(estop and 14 or power and (attached and 21 or 20) or 7) end),
+  sysstate = ask(function(_, now)
+    return text_of(now.controller.estop == "on" and 14 or is_on(now) and (attached and 21 or 20) or 7)
+  end),
   state = { does = "STATUS", answer = function(_, result)
     return result.status.phase == "running" and "1" or "0"
   end },
@@ -448,7 +465,7 @@ local commands = {
   isfullyclosed = ask(function() return width <= 2 and "-1" or "0" end),
   freemode = ask(function(words, now, request)
     local which = whole(words[1], -1, 6)
-    check_power(request)
+    check_power(request, now)
     if which == 6 and not has_rail(now) then
       fail(-2800, "Warning Parameter Mismatch: no rail")
     elseif which == 5 then
@@ -457,8 +474,8 @@ local commands = {
     free = which > 0 and { [which] = true } or which == 0 and { true, true, true, true, false, true } or {}
     return ""
   end),
-  zerotorque = ask(function(words, _, request)
-    check_power(request)
+  zerotorque = ask(function(words, now, request)
+    check_power(request, now)
     free = whole(words[1], 0, 1) == 1 and { whole(words[2] or "1") } or {}
     return ""
   end),
@@ -494,7 +511,7 @@ local commands = {
     return lines_to(at, at.clearance, profile(words[2] or "1"), now)
   end),
   moveextraaxis = ask(function(words, now, request)
-    check_motion(request)
+    check_motion(request, now)
     if not has_rail(now) then
       fail(-1002, "Invalid axis number: no rail")
     end
@@ -508,24 +525,19 @@ local commands = {
     return ("MOVE rail=%.9f %s"):format(words.rail or location(words.station or "").rail, shares(profiles[1]))
   end),
   moverail = ask(function(words, now, request)
-    check_motion(request)
+    check_motion(request, now)
     rail_next = words.mode == 2 and (words.rail or location(words.station or "").rail) or nil
     return ""
   end),
 
-  home = { does = "HOME", run = function(request)
-    check_power(request)
-    for place, at in pairs(shown) do
-      if not at[2] then
-        fail(-1012, ("Joint out-of-range: joint %d at %s"):format(place, text_of(at[1] + 0.0)))
-      end
-    end
-    shown = {}
+  home = { does = "HOME", run = function(request, now)
+    check_power(request, now)
+    check_hands()
     return "HOME"
   end },
-  movetosafe = { does = "HOME", run = function(request) check_motion(request) return "HOME" end },
+  movetosafe = { does = "HOME", run = function(request, now) check_motion(request, now) return "HOME" end },
   gripper = { does = "VALVE", run = function(request, now)
-    check_power(request)
+    check_power(request, now)
     local which = whole(request.words[1], 1, 2)
     width = which == 1 and open_width or close_width
     return ("VALVE %s %d"):format(hand_name(now), which == 1 and 1 or 0)
@@ -533,8 +545,8 @@ local commands = {
   pickplate = { does = "RECOVER GET", run = transfer("GET"), answer = function() width = grasp[1] return "-1" end },
   placeplate = { does = "RECOVER PUT", run = transfer("PUT"), answer = function() width = open_width end },
 }
-commands.homeall = { does = "HOME", run = function(request)
-  if not power then
+commands.homeall = { does = "HOME", run = function(_, now)
+  if not is_on(now) then
     fail(-1046, "Power not enabled")
   elseif attached then
     fail(-1050, "Illegal while a robot is attached")
@@ -566,8 +578,8 @@ local function decode(frame, client)
   name = name:lower()
   if name == "moverail" then
     name = take_rail(words)
-  elseif name == "hp" and words[1] and whole(words[1], 0, 1) == 0 then
-    power, name = false, "hp 0"
+  elseif name == "hp" and words[1] then
+    name = ("hp %d"):format(whole(words[1], 0, 1))
   end
   cut_short = cut_short or name == "halt" or name == "hp 0"
   return { command = name, words = words, port = client.port }
@@ -595,16 +607,17 @@ end
 local function tester(text)
   local what, joint, at = text:match("^(%a+)%s+(%a+)%s*(%S*)$")
   if what == "estop" and (joint == "on" or joint == "off") then
-    estop = joint == "on"
-    cut_short = cut_short or estop
-    power = power and not estop
-    return estop
+    cut_short = cut_short or joint == "on"
+    return "CONTROLLER estop=" .. joint
   end
   local place, value = JOINTS[joint or ""], tonumber(at)
   if (what ~= "hand" and what ~= "overshoot") or not place or (at ~= "" and not (value and value - value == 0)) then
     host.refuse("BAD_ARGUMENT", "tell: " .. text .. " (expected estop on, estop off, hand JOINT [VALUE], or overshoot JOINT VALUE)")
   end
-  shown[place] = value and { value, what == "overshoot" } or nil
+  if what == "overshoot" then
+    return value and ("CONTROLLER exceeded=%s at=%.17g"):format(AXES[place], value) or "CONTROLLER exceeded=none"
+  end
+  shown[place] = value
 end
 
 return {
@@ -613,9 +626,11 @@ return {
   ports = { "status", "motion" },
   in_order = true,
   framing = { ends = { "\r\n", "\n" }, longest = 512 },
+  begins = "CONTROLLER power=off",
   gone = function(client)
     if client.port == "motion" then
-      power, attached, rail_next = false, false, nil
+      attached, rail_next = false, nil
+      return "CONTROLLER power=off"
     end
   end,
   tester = tester,
@@ -631,6 +646,7 @@ return {
   },
   errors = {
     NO_SUCH_COMMAND = -2805, NOT_HOMED = -1021, LIMIT_EXCEEDED = -1012, OUT_OF_REACH = -1040, BUSY = -1050, STOPPED = -1045,
+    NO_POWER = -1046, EMERGENCY_STOP = -1028, SOFT_LIMIT = -1012,
     COLLISION_AHEAD = -3102, WAFER_ALREADY_THERE = -3100, WAFER_ON_GRIPPER = -3101, WAFER_LOST = -3103, BAD_LIMITS = -706, NO_WAFER_ON_GRIPPER = -3104,
   },
   other_error = "-1000",

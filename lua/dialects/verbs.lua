@@ -252,6 +252,28 @@ return {
     GFND = { does = "LOCAL", run = function(request)
       return found[request.arguments[1] or ""] or host.refuse("BAD_ARGUMENT", request.arguments[1])
     end, answer = function(_, result) return result.answer end },
+    CTRL = { does = "CONTROLLER", run = function(request)
+      local name, value = request.arguments[1] or "", request.arguments[2] or ""
+      if not name:find("^%a+$") or not value:find("^%a+$") then
+        host.refuse("BAD_ARGUMENT", name .. "," .. value)
+      end
+      return ("CONTROLLER %s=%s"):format(name, value)
+    end },
+    SPED = { does = "CONTROLLER", run = function(request)
+      local percent = tonumber(request.arguments[1]) or host.refuse("BAD_ARGUMENT", request.arguments[1])
+      return ("CONTROLLER override=%.17g"):format(percent / 100)
+    end },
+    GPMP = { does = "PORT_MAP", run = at_station("PORT_MAP"), answer = function(request, result)
+      return tostring(result.values.codes or host.refuse("NOT_MAPPED", request.arguments[1]))
+    end },
+    GPRT = { does = "STATUS", answer = function(request, result)
+      local name, list = host.station(request.arguments[1] or ""), {}
+      for place, part in ipairs({ "carrier", "does", "is", "left" }) do
+        list[place] = field(tostring(result.status[name .. "." .. part] or ""))
+      end
+      return table.concat(list, ",")
+    end },
+    GCTL = { does = "CONTROLLER", answer = told },
     GPOS = { does = "STATUS", answer = position },
     STAT = { does = "STATUS", answer = function(_, result)
       return ("%s,%s,%s"):format(result.state, host.code(result.status.error) or "0000", arms(result))
@@ -316,6 +338,7 @@ return {
     WRONG_PRESSURE = "0130", BOTH_OPEN = "0131", DOOR_OPEN = "0132",
     PORT_NOT_OPEN = "0133", PORT_ENTERED = "0134", NO_CARRIER = "0135", CARRIER_THERE = "0136",
     HANDSHAKE_TIMEOUT = "0137",
+    NO_POWER = "0141", BRAKES_SET = "0142", EMERGENCY_STOP = "0143", SERVO_ERROR = "0144", SOFT_LIMIT = "0145", WRONG_MODE = "0146",
   },
   other_error = "0999",
   states = { idle = "idle", running = "moving", held = "paused" },

@@ -15,10 +15,18 @@ local function degrees(field, axis)
   return function(word) return ("%s=%.17g"):format(field, host.degrees(word, axis)) end
 end
 
+-- Percents of the limits, as a part of them.
+local function share(field)
+  return function(word)
+    return ("%s=%.17g"):format(field, (tonumber(word) or host.refuse("BAD_ARGUMENT", word)) / 100)
+  end
+end
+
 -- The options behind a command's first words: their word, and its form in our line.
 local OPTIONS = {
   SLOT = function() end,
   ARM = function(word) return "gripper=" .. host.arm(word) end,
+  SPEED = share("speed"), ACCEL = share("acceleration"),
   RO = mm("dx"), TO = mm("dy"), ZO = mm("dz"),
   STOP = function(word)
     local phases = { EXTENDED = "extended", UP = "up" }
@@ -163,6 +171,24 @@ local function told(word)
   end
 end
 
+-- RQ PORT LP1: what a load port does, which carrier it has and what is left of the step: PORT CARRIER C1 STEP TP3 OPEN.
+local function port(name, status)
+  local list = { "PORT" }
+  for _, field in ipairs({ { "CARRIER", "carrier" }, { "STEP", "does" }, { "IS", "is" }, { "LEFT", "left" } }) do
+    local value = status[name .. "." .. field[2]]
+    list[#list + 1] = value and ("%s %s"):format(field[1], tostring(value):upper())
+  end
+  return table.concat(list, " ")
+end
+
+-- SET POWER OFF: what the robot's own controller has from now on.
+local function controller(name)
+  return { does = "CONTROLLER", run = function(request)
+    local value = (request.words[3] or ""):match("^%a+$") or host.refuse("BAD_ARGUMENT", name)
+    return ("CONTROLLER %s=%s"):format(name, value:lower())
+  end }
+end
+
 -- RQ STN tells all stations; RQ STN A ARM EE tells where the arm's axes stand in A.
 local function station(request)
   local words = request.words
@@ -192,7 +218,8 @@ end
 local MOST = {
   HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
   OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, AWAIT = 2, PUMP = 2, CARRIER = 2, PORT = 2, REMOVE = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
-  ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
+  ["SET BKG"] = 1, ["SET POWER"] = 1, ["SET BRAKES"] = 1, ["SET ESTOP"] = 1, ["SET SERVO"] = 1, ["SET MODE"] = 1, ["SET SPEED"] = 1,
+  ["RQ CTRL"] = 0, ["RQ MAP"] = 1, ["RQ PORT"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
   ["RQ AXES"] = 0, ["RQ FOUND"] = 1,
 }
 
@@ -299,6 +326,13 @@ return {
       background = switch == "ON"
       return ""
     end },
+    ["SET POWER"] = controller("power"),
+    ["SET BRAKES"] = controller("brakes"),
+    ["SET ESTOP"] = controller("estop"),
+    ["SET SERVO"] = controller("servo"),
+    ["SET MODE"] = controller("mode"),
+    ["SET SPEED"] = { does = "CONTROLLER", run = function(request) return "CONTROLLER " .. share("override")(request.words[3] or "") end },
+    ["RQ CTRL"] = { does = "CONTROLLER", answer = told("CTRL") },
     ["RQ POS"] = { does = "STATUS", answer = position },
     ["RQ LOAD"] = { does = "STATUS", answer = held },
     ["RQ STATUS"] = { does = "STATUS", answer = function(_, result) 
@@ -308,6 +342,14 @@ return {
       return "VERSION " .. result.values.version
     end },
     ["RQ STN"] = { does = "STATIONS STATION", run = station, answer = place },
+    ["RQ MAP"] = { does = "PORT_MAP", run = function(request) return "PORT_MAP " .. host.station(request.words[3] or "") end,
+                   answer = function(request, result)
+      return result.values.codes and map(request, result) or host.refuse("NOT_MAPPED", request.words[3])
+    end },
+    ["RQ PORT"] = { does = "STATUS", answer = function(request, result)
+      local name = host.station(request.words[3] or "")
+      return port(name, result.status)
+    end },
     ["RQ AXES"] = { does = "AXES", answer = told("AXES") },
     ["RQ WAFERS"] = { does = "WHERE", run = with_name("WHERE", 3, true), answer = told("WAFERS") },
     ["RQ FOUND"] = { does = "LOCAL", run = function(request)
@@ -355,6 +397,7 @@ return {
     WRONG_PRESSURE = "0610", BOTH_OPEN = "0611", DOOR_OPEN = "0612",
     PORT_NOT_OPEN = "0613", PORT_ENTERED = "0614", NO_CARRIER = "0615", CARRIER_THERE = "0616",
     HANDSHAKE_TIMEOUT = "0617",
+    NO_POWER = "0701", BRAKES_SET = "0702", EMERGENCY_STOP = "0703", SERVO_ERROR = "0704", SOFT_LIMIT = "0705", WRONG_MODE = "0706",
   },
   other_error = "0999",
   states = { idle = "IDLE", running = "BUSY", held = "HELD" },

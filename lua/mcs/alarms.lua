@@ -16,6 +16,7 @@ return function(native, lookup)
   local PLANNED = STATION .. " LINE"
   local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
     .. " PUMP WAIT_FOR CARRIER PORT TAKE_AWAY"
+  local BY_ROBOT = STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE"
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
@@ -33,8 +34,8 @@ return function(native, lookup)
     NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
     WAFER_ON_GRIPPER = { "cause", "GET SWAP" },
     NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" .. SETTING },
-    AMBIGUOUS_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
-    NO_SUCH_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
+    AMBIGUOUS_ROBOT = { "check", BY_ROBOT .. SETTING },
+    NO_SUCH_ROBOT = { "check", BY_ROBOT .. SETTING },
     NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
     NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
     BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES .. SETTING },
@@ -95,6 +96,12 @@ return function(native, lookup)
     BAD_SCAN = { "line", "ALIGN" },
     RUN_OVER = { "line", MOVING },
     NO_ANSWER = { "line", MOVING },
+    NO_POWER = { "check", BY_ROBOT },
+    BRAKES_SET = { "check", BY_ROBOT },
+    EMERGENCY_STOP = { "check", BY_ROBOT },
+    SERVO_ERROR = { "check", BY_ROBOT },
+    SOFT_LIMIT = { "check", PLANNED .. " CONTINUE RECOVER MOVE FLIP" },
+    WRONG_MODE = { "check", BY_ROBOT },
   }
 
   -- The manual's table is made of these: tests/end_to_end/tools/manual_tables.lua.

@@ -176,11 +176,17 @@ return function(native, lookup, tasks, alarms)
     return needs
   end
 
+  -- Commands that a robot's own controller does not refuse: they move no axis of it.
+  local STANDING_STILL = { STOP = true, VALVE = true }
+
   local function run_alone(needs, word, action, ...)
     if needs and needs.unclear then
       needs.unclear()
     end
     tasks.take(needs)
+    if needs and needs.robot and not STANDING_STILL[word] then
+      native.check_controller(needs.robot, word == "HOME")
+    end
     if needs and needs.robot then
       native.sets_out(needs.robot)
     end
@@ -239,9 +245,10 @@ return function(native, lookup, tasks, alarms)
     local state = arm.state()
     state.stopped = state.stopped or marks(task) and running[task] or nil
     running[task], task.robot, task.last_robot = text, needs and needs.robot, needs and needs.robot
-    task.is_lone = needs and needs.is_lone
+    task.is_lone, task.share = needs and needs.is_lone, nil
     state = arm.state()
     local ok, result = pcall(run_alone, needs, word, action, ...)
+    local was_cut = native.was_cut()
     local numbered = type(result) == "table" and math.type(result.number) == "integer"
       and type(result.text) == "string"
     local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
@@ -259,7 +266,7 @@ return function(native, lookup, tasks, alarms)
     -- The arm did not move if the command has waited for it in vain; nor, with several ports' commands, if it had
     -- no part in this one.
     local had_part = not tasks.has_waited() and (needs == nil or needs.robot or not native.has_jobs())
-    if number == lookup.errors.STOPPED.number and had_part then
+    if (number == lookup.errors.STOPPED.number or was_cut) and had_part then
       for _, robot in ipairs(task.robot and { task.robot } or arm.find_holding()) do
         give_up(robot)
       end

@@ -2,7 +2,7 @@
 -- lua/mcs/transfer.lua.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, math, pairs, table, type = ipairs, math, pairs, table, type
+local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
 
 return function(native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers, stations)
   local commands = {}
@@ -79,12 +79,6 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     return values
   end
 
-  -- The parts of the limits that a motion may use; nil: all of them.
-  local function share_of(speed, acceleration)
-    speed, acceleration = speed or 1, acceleration or 1
-    return (speed ~= 1 or acceleration ~= 1) and { speed, acceleration } or nil
-  end
-
   local ELBOWS = { left = 1, right = 2 }
 
   -- The axes with the first gripper at this pose: x, y, z and the direction of its x axis, yaw; what is not named is
@@ -125,7 +119,7 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
       table.move(list, 1, #list, #known + 1, known)
     end
     local axes, to = native.axes(), read_fields("move", fields, known, { speed = lookup.ranges.speed_share })
-    local share, is_pose = share_of(to.speed, to.acceleration), to.x or to.y or elbow > 0
+    local share, is_pose = lookup.share(to), to.x or to.y or elbow > 0
     for _, axis in ipairs(own) do
       local value = not (is_pose and POSE[axis.name]) and to[axis.name]
       axes[axis.index] = value and (axis.turns and math.rad(value) or value) or axes[axis.index]
@@ -159,7 +153,7 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
   -- The time that a FLIP waits for a blade that should have arrived, s.
   local BLADE_TIMEOUT = 1
 
-  local function flip(name)
+  local function flip(name, options)
     local gripper = native.layout.grippers[lookup.gripper(name) and lookup.effector(name)]
     local axis, axes = lookup.axis("flip", gripper.robot), native.axes()
     if not axis then
@@ -167,6 +161,7 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     end
     arm.check_outside()
     check_drops_nothing()
+    tasks.current().share = lookup.read_share(options)
     axes[axis.index] = math.abs(axes[axis.index]) > math.pi / 2 and 0 or math.pi
     alarms.break_flip(gripper.name)
     play { axes = axes }
@@ -174,17 +169,19 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
   end
 
   -- Turns the blade over about its x, by half a turn, or back; or the wafer in a flipper's clamp.
-  function commands.flip(gripper)
+  function commands.flip(gripper, options)
     local station = flippers.find(gripper)
     if station then
+      lookup.read_share(options)
       return flippers.flip(station)
     end
-    arm.move(arm.needs(true, nil, { gripper = gripper }), lookup.command("FLIP", gripper), flip, gripper)
+    local text = lookup.command("FLIP", gripper, lookup.fields_text(options, lookup.shares))
+    arm.move(arm.needs(true, nil, { gripper = gripper }), text, flip, gripper, options)
   end
 
   local function line(by)
     local parts = read_fields("line", by, lookup.line_fields)
-    local share, at, way = share_of(1, parts.acceleration), native.gripper_pose(lookup.on_robot()[1]).r, {}
+    local share, at, way = lookup.share { acceleration = parts.acceleration }, native.gripper_pose(lookup.on_robot()[1]).r, {}
     for place, name in ipairs({ "x", "y", "z" }) do
       if parts[name] and parts["d" .. name] then
         native.fail("BAD_ARGUMENT", ("d%s: %.10g (expected none beside %s)"):format(name, parts["d" .. name], name))
@@ -212,9 +209,11 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
   -------------------------------------------------------------------------------------- STOP and what follows
 
   -- Moves straight out of the station in which the arm stands, if it does.
-  local function recover()
+  local function recover(options)
     local target = arm.state().inside
+    tasks.current().share = lookup.read_share(options)
     if target then
+      target.share = nil
       target.stands = native.gripper_pose(target.gripper).r
       target.loaded = native.sensor(target.gripper)
       target.watched = false
@@ -223,12 +222,12 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     arm.set_free()
   end
 
-  function commands.recover()
-    arm.move(arm.needs_stand(), "RECOVER", recover)
+  function commands.recover(options)
+    arm.move(arm.needs_stand(), lookup.command("RECOVER", lookup.fields_text(options, lookup.shares)), recover, options)
   end
 
-  local function home()
-    recover()
+  local function home(options)
+    recover(options)
     local axes, robot = native.axes(), native.layout.robots[tasks.current().robot]
     local retracts = robot.retracts and not ways.goes_home_by_points()
     for _, axis in ipairs(retracts and robot.arms or {}) do
@@ -242,10 +241,11 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     end
     player.play(patterns.single, { segment = { axes = axes, homeward = true } })
     arm.state().homed = true
+    native.mend_controller(tasks.current().robot or 1)
   end
 
-  function commands.home()
-    arm.move(arm.needs_stand(), "HOME", home)
+  function commands.home(options)
+    arm.move(arm.needs_stand(), lookup.command("HOME", lookup.fields_text(options, lookup.shares)), home, options)
   end
 
   -- A STOP comes after this many simulated seconds: the running commands end there with STOPPED, or only the
@@ -261,6 +261,32 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
       local text = "mechanism: %s (expected one of: %s; a station's name is that of its chuck)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(mechanism), names))
     end
+  end
+
+  local function text_of_change(value)
+    return type(value) == "number" and ("%.17g"):format(value) or tostring(value)
+  end
+
+  local function change_controller(changes, robot)
+    local texts = {}
+    for name, value in pairs(changes) do
+      if type(name) ~= "string" or type(value) ~= "string" and type(value) ~= "number" then
+        local text = "%s: %s (expected a field such as power, and a word or a number)"
+        native.fail("BAD_ARGUMENT", text:format(tostring(name), lookup.quote(value)))
+      end
+      texts[name] = name ~= "robot" and text_of_change(value) or nil
+    end
+    native.change_controller(robot, texts)
+  end
+
+  -- controller { power = "off" }: the robot's own controller has this from now on. Returns what it has.
+  function commands.controller(changes)
+    local robot = lookup.robot_for(nil, changes ~= nil and lookup.table("controller", changes) or nil)
+    if changes ~= nil then
+      local text = lookup.command("CONTROLLER", lookup.fields_text(changes, lookup.controller_fields))
+      arm.run(nil, arm.with_robot(text, { robot = robot }), change_controller, changes, robot)
+    end
+    return native.controller(robot)
   end
 
   -- Continues a GET, PUT or SWAP that its `stop` holds in a phase; returns the PUT's result.

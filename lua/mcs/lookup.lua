@@ -12,9 +12,10 @@ return function(native, errors)
   -- number; the `values` of another kind, or none for a gripper's name.
   lookup.parameters = native.ranges()
   lookup.parameters.check_map = { values = { true, false } }
-  lookup.options = { gripper = {}, robot = {}, force = { values = { true, false } } }
+  local share = { 1e-3, 1, "of the limits" }
+  lookup.options = { gripper = {}, robot = {}, force = { values = { true, false } }, speed = share, acceleration = share }
   -- SWAP takes with the empty gripper and puts with the other one.
-  lookup.swap_options = { robot = {}, force = lookup.options.force }
+  lookup.swap_options = { robot = {}, force = lookup.options.force, speed = share, acceleration = share }
 
   -- The corrections of a GET, PUT or SWAP, and where it may stop: in order.
   lookup.correction_fields = { "dx", "dy", "dz", "turn" }
@@ -41,8 +42,14 @@ return function(native, errors)
   lookup.standing = { "theta", "r", "z", "yaw", "forearm" }
   -- And those of a pose, and the parts of the limits.
   lookup.pose_fields, lookup.shares = { "x", "y" }, { "speed", "acceleration" }
+  -- A robot's own controller, in order.
+  lookup.controller_fields = { "power", "brakes", "estop", "servo", "mode", "exceeded", "at", "override" }
+  lookup.controller_words = {
+    power = { "on", "off" }, brakes = { "released", "set" }, estop = { "on", "off" }, servo = { "ok", "error" },
+    mode = { "automatic", "manual", "remote" },
+  }
   lookup.line_fields = { "dx", "dy", "dz", "x", "y", "z", "speed", "acceleration" }
-  local way, turn, share = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }, { 1e-3, 1, "of the limits" }
+  local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
   lookup.ranges = {
     theta = turn, r = { nil, nil, "mm" }, z = { nil, nil, "mm" }, yaw = turn, degrees = turn,
     forearm = turn, rail = { nil, nil, "mm" }, tilt_x = turn, tilt_y = turn, flip = turn, r2 = { nil, nil, "mm" }, yaw2 = turn,
@@ -114,6 +121,32 @@ return function(native, errors)
         return axis
       end
     end
+  end
+
+  -- The parts of the limits in a command's options; nil: all of them.
+  function lookup.share(options)
+    local speed, acceleration = options.speed or 1, options.acceleration or 1
+    return (speed ~= 1 or acceleration ~= 1) and { speed, acceleration } or nil
+  end
+
+  -- Likewise, of a command that has no other options.
+  function lookup.read_share(options)
+    for name, value in pairs(options ~= nil and lookup.table("options", options) or {}) do
+      if name ~= "speed" and name ~= "acceleration" then
+        lookup.refuse_field(name, value, lookup.shares)
+      end
+      lookup.number(name, value, share)
+    end
+    return lookup.share(options or {})
+  end
+
+  -- The names of a robot's axes, in order.
+  function lookup.own_axes(robot)
+    local names = {}
+    for place, axis in ipairs(native.layout.robots[robot].axes) do
+      names[place] = axis.name
+    end
+    return names
   end
 
   -- The names of these entries, in order.

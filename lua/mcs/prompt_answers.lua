@@ -130,6 +130,11 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tokens.pairs({ { "carrier", name }, time })
   end
 
+  function answers.port_map(arguments)
+    local codes = queries.port_map(arguments[1])
+    return ("codes=%s"):format(codes and table.concat(codes) or "none")
+  end
+
   function answers.continue()
     local answer
     local function answer_again()
@@ -316,6 +321,13 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     end
   end
 
+  -- Likewise, of a command with one argument and options.
+  function answers.moving_of_one(action)
+    return function(arguments, options)
+      return tokens.pairs { timed(action, arguments[1], options) }
+    end
+  end
+
   function answers.pattern(arguments, options)
     return carried(function() return {} end, commands.pattern, arguments[1], arguments[2], arguments[3], options)
   end
@@ -336,6 +348,14 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tasks and (text:gsub("^phase=idle", function()
       return "phase=running " .. tasks
     end)) or text
+  end
+
+  function answers.controller(_, options)
+    local found, list = commands.controller(next(options) ~= nil and options or nil), {}
+    for _, name in ipairs(lookup.controller_fields) do
+      list[#list + 1] = found[name] and { name, found[name] }
+    end
+    return tokens.pairs(list)
   end
 
   local function place()

@@ -59,6 +59,12 @@ return function(native, commands, answers, lookup, tokens, states, background, o
     elbow = function() return { "left", "right" } end,
     up_or_down = function() return lookup.up_or_down.values end,
     side = function() return lookup.sides end,
+    power = function() return lookup.controller_words.power end,
+    brakes = function() return lookup.controller_words.brakes end,
+    estop = function() return lookup.controller_words.estop end,
+    servo = function() return lookup.controller_words.servo end,
+    operation = function() return lookup.controller_words.mode end,
+    axis = function() return lookup.own_axes(lookup.bound() or 1) end,
     port_state = function() return lookup.port_states end,
     carrier = function() return native.layout.carriers end,
     pattern = own.names, door = names_of "doors", robot = names_of "robots", flips = flips_names,
@@ -66,7 +72,8 @@ return function(native, commands, answers, lookup, tokens, states, background, o
     slots = function() return {} end, changes = function() return {} end,
   }
 
-  local station_options = { gripper = "gripper", force = "switch" }
+  local share_options = { speed = "number", acceleration = "number" }
+  local station_options = { gripper = "gripper", force = "switch", speed = "number", acceleration = "number" }
   for name, kind in pairs(lookup.parameters) do
     station_options[name] = kind[2] and "number" or kind.values[1] == true and "switch" or name
   end
@@ -201,9 +208,9 @@ return function(native, commands, answers, lookup, tokens, states, background, o
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin" },
     TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = answers.teach,
               does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
-    HOME = { takes = {}, run = answers.moving(commands.home),
+    HOME = { takes = {}, options = share_options, run = answers.moving_by_name(commands.home),
              does = "out of the station if the arm stands in one, then home" },
-    RECOVER = { takes = {}, run = answers.moving(commands.recover),
+    RECOVER = { takes = {}, options = share_options, run = answers.moving_by_name(commands.recover),
                 does = "straight out of the station that the arm stands in" },
     TASK = { takes = { "command" }, repeated = true, keeps = true,
              does = "begins a command that goes on beside those that follow; tells the task's number" },
@@ -246,7 +253,7 @@ return function(native, commands, answers, lookup, tokens, states, background, o
              beside = fields(lookup.pose_fields, fields(lookup.shares, { elbow = "elbow" })), of_axes = true, needs_option = true,
              run = answers.moving_by_name(commands.move),
              does = "moves the named axes to these positions, degrees and mm; with x, y or elbow the gripper to that pose" },
-    FLIP = { takes = { "flips" }, run = answers.moving(commands.flip),
+    FLIP = { takes = { "flips" }, options = share_options, run = answers.moving_of_one(commands.flip),
              does = "turns the blade over, or back; of a flipper the wafer in its clamp" },
     LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
              run = answers.moving_by_name(commands.line),
@@ -261,8 +268,14 @@ return function(native, commands, answers, lookup, tokens, states, background, o
                 does = "a carrier comes to a load port, at once or at a time in s; wafers=3 or wafers=1,3; slots=3:crossed" },
     PORT = { takes = { "station", "port_state" }, run = answers.moving(commands.port),
              does = "brings a load port with its carrier to this state, and waits until it has it" },
+    PORT_MAP = { takes = { "station" }, run = answers.port_map, asks = true, keeps = true,
+                 does = "the codes by slot that a load port has mapped of its carrier, as MAP has them, or none" },
     TAKE_AWAY = { takes = { "station" }, run = answers.moving(commands.take_away),
                   does = "the carrier of a load port goes, with what lies in it" },
+    CONTROLLER = { takes = {}, options = { power = "power", brakes = "brakes", estop = "estop", servo = "servo", mode = "operation",
+                   exceeded = "axis", at = "number", override = "number" }, run = answers.controller,
+                   does = "what a robot's own controller has from now on: power, brakes, emergency stop, servos, mode, "
+                     .. "an axis beyond its soft limit, the part of all speeds; without options it tells them" },
     WAIT = { takes = { "seconds" }, run = answers.moving(commands.wait), does = "stands still" },
     FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault, breaks = true,
               does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },

@@ -169,7 +169,8 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
     stations.check_taught(station, robot)
     mechanisms.check_pins(station)
     mechanisms.check_flipper(station)
-    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force, robot = robot }
+    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force, robot = robot,
+      share = lookup.share(options) }
     target.stage_home = word == "put" and mechanisms.way_home(station) or nil
     target.gripper = gripper or lookup.effector(options.gripper, station.by[target.robot] or nil, target.robot)
     local found = word == "get" and prefix and align.correction(station.name, options, prefix)

@@ -324,7 +324,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       fields[#fields + 1] = prefix .. "correct"
       fields[#fields + 1] = prefix .. "stop"
     end
-    fields[#fields + 1] = "force"
+    table.move({ "force", "speed", "acceleration" }, 1, 3, #fields + 1, fields)
     return lookup.command(word, station, slot, lookup.fields_text(options, fields))
   end
 
@@ -379,7 +379,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     if give.centre then
       native.fail("BAD_ARGUMENT", "put_centre: true (expected false: the beams would see both wafers of a SWAP)")
     end
-    local target = { get = take, put = give, watched = take.watched, robot = robot }
+    local target = { get = take, put = give, watched = take.watched, robot = robot, share = take.share }
     arm.check_free()
     times.check("swap", take)
     alarms.break_at("SWAP", "get", take)
@@ -422,7 +422,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
 
   -- Moves in front of the slot, to where a GET or, with a wafer, a PUT enters.
   function transfer.ready(station, slot, options)
-    local text = lookup.command("READY", station, slot)
+    local text = lookup.command("READY", station, slot, lookup.fields_text(options, lookup.shares))
     arm.move(arm.needs(true, station, options, true), text, ready, station, slot, options)
   end
 
@@ -450,7 +450,8 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
 
   -- Sweeps over the station's slots; returns a list of their codes, see slot_map.lua.
   function transfer.map(station, options)
-    return arm.move(arm.needs(true, station, options), lookup.command("MAP", station), map, station, options)
+    local text = lookup.command("MAP", station, lookup.fields_text(options, lookup.shares))
+    return arm.move(arm.needs(true, station, options), text, map, station, options)
   end
 
   -- For other commands and for trying out: GET and PUT within a command, how the result of either is judged, and

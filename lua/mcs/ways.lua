@@ -93,6 +93,22 @@ return function(native, arm, tasks)
     return target and { station = target.station, gripper = target.gripper }
   end
 
+  -- The parts of the limits that a robot's segment may use: those of its command, and its controller's override.
+  -- The speed and the acceleration of a line are such limits, too.
+  local function slow_down(request, target)
+    local robot = target.robot or tasks.current().robot
+    local moves = request.axes and not request.moves or request.line
+    if request.is_slowed or not robot or not moves then
+      return
+    end
+    local share, override = request.share or target.share or tasks.current().share, native.controller(robot).override
+    local speed, acceleration = (share and share[1] or 1) * override, share and share[2] or 1
+    request.is_slowed = true
+    request.share = (speed ~= 1 or acceleration ~= 1) and { speed, acceleration } or nil
+    request.speed = request.speed and request.speed * speed
+    request.acceleration = request.acceleration and request.acceleration * acceleration
+  end
+
   -- The segment of a request, with the axes for the gripper's goal. Detour 1 turns theta the longer way
   -- round, detour 2 the shorter way plus a whole turn. `front` is the station in front of which the arm
   -- stands.
@@ -120,6 +136,7 @@ return function(native, arm, tasks)
         request.axes[axis] = at
       end
     end
+    slow_down(request, target)
     return request
   end
 

@@ -14,6 +14,8 @@ local SLOT = { "slot", "integer", "from 1, at the bottom" }
 local WAFER = { "wafer", "string", "a wafer's name" }
 local GRIPPER = { "gripper", "string", "a gripper's name" }
 
+local SHARES = { "options", "waferhand.shares?", "the parts of the limits, of a robot's motion" }
+
 local function frame(name)
   return { name, "string", "a wafer, a gripper, a station, a slot such as \"B/10\", or \"base\"" }
 end
@@ -52,8 +54,8 @@ words.scripts = {
   { "map", bound = true, takes = { STATION, options("command_options") },
            gives = { { "integer[]", "codes" } },
            does = "Sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin; slot 1 first." },
-  { "home", bound = true, takes = {}, does = "Out of the station if the arm stands in one, then home." },
-  { "recover", bound = true, takes = {}, does = "Straight out of the station that the arm stands in." },
+  { "home", bound = true, takes = { SHARES }, does = "Out of the station if the arm stands in one, then home." },
+  { "recover", bound = true, takes = { SHARES }, does = "Straight out of the station that the arm stands in." },
   { "stop_in", takes = { { "seconds", "number", "s" }, { "mechanism", "string?", "whose command ends; none: all" } },
                does = "A STOP comes after so much simulated time." },
   { "rotate", takes = { STATION, { "degrees", "number", "degrees" } },
@@ -84,7 +86,7 @@ words.scripts = {
              does = "Switches a gripper's valve." },
   { "move", bound = true, takes = { { "positions", "waferhand.positions", "of the axes that move" } },
             does = "Moves the named axes to these positions." },
-  { "flip", takes = { { "what", "string", "a gripper's name, or a flipper's" } },
+  { "flip", takes = { { "what", "string", "a gripper's name, or a flipper's" }, SHARES },
             does = "Turns the blade over about its x, by half a turn, or back; of a flipper the wafer in its clamp." },
   { "robot", takes = { { "name", "string", "a robot's name" } }, gives = { { "waferhand.bound_words", "words" } },
              does = "The words that move a robot, bound to this one of several: VAC:get(\"LL\", 1)." },
@@ -105,6 +107,9 @@ words.scripts = {
                 does = "The codes by slot, as of map, that a load port has mapped of its carrier; nil: it has not." },
   { "late", takes = { { "how", "\"tell\"|\"fail\"", "\"fail\" at first" } },
             does = "From now on a stay beyond a station's window is told alone, or fails the run." },
+  { "controller", bound = true, takes = { { "changes", "waferhand.controller_changes?", "what it has from now on" } },
+                  gives = { { "waferhand.controller_state", "state" } },
+                  does = "A robot's own controller: its power, brakes, emergency stop, servos, mode, and the part of all speeds." },
   { "now", takes = {}, gives = { { "number", "seconds" } }, does = "Simulated seconds so far." },
   { "task", takes = { { "body", "function", "what it does" } }, gives = { { "waferhand.task", "task" } },
             does = "Begins what goes on beside the rest, in simulated time." },
@@ -193,6 +198,8 @@ words.options = {
   dx = "off the taught place, along the slot's x",
   dy = "off the taught place, along the slot's y",
   dz = "above the taught place",
+  speed = "the part of all speeds that it may use, 0.001 to 1",
+  acceleration = "the part of all accelerations that it may use, 0.001 to 1",
   force = "true: what is believed of blades and slots refuses nothing",
   glass = "how much light goes through the wafer; 0: none",
   gripper = "the blade that does it, in place of the station's effector",
@@ -224,6 +231,21 @@ words.classes = {
     { "wafers", "integer|integer[]|nil", "how many of its wafers come, or those of which slots; all of them without it" },
     { "slots", "table<integer, \"empty\"|\"protruded\"|\"crossed\"|\"double\">?", "how the wafers of some slots come" },
     { "at", "number?", "s of simulated time; now without it" } },
+  { "shares", "The parts of the limits of all axes that a motion may use.",
+    { "speed", "number?", "0.001 to 1" }, { "acceleration", "number?", "likewise, of acceleration and jerk" } },
+  { "controller_changes", "The state of a robot's own controller from now on; the rest stays.",
+    { "robot", "string?", "whose controller it is, one of several" },
+    { "power", "\"on\"|\"off\"|nil", "it goes off with the emergency stop" }, { "brakes", "\"released\"|\"set\"|nil", "of all axes" },
+    { "estop", "\"off\"|\"on\"|nil", "the emergency stop is pressed" }, { "servo", "\"ok\"|\"error\"|nil", "of any axis" },
+    { "mode", "\"automatic\"|\"manual\"|\"remote\"|nil", "who may move it: all, no host, hosts alone" },
+    { "exceeded", "string?", "the axis that stands beyond its soft limit, until HOME; or none" },
+    { "at", "number?", "where that axis's encoder tells that it stands, degrees or mm" },
+    { "override", "number?", "the part of all speeds, 0.001 to 1, from the next command on" } },
+  { "controller_state", "The state of a robot's own controller.",
+    { "power", "\"on\"|\"off\"", "as in the changes" }, { "brakes", "\"released\"|\"set\"", "likewise" },
+    { "estop", "\"off\"|\"on\"", "likewise" }, { "servo", "\"ok\"|\"error\"", "likewise" },
+    { "mode", "\"automatic\"|\"manual\"|\"remote\"", "likewise" }, { "exceeded", "string?", "likewise" },
+    { "at", "number?", "likewise" }, { "override", "number", "likewise" } },
   { "measurement", "The values of the check: lengths in mm.",
     { "dr", "number[]", "the paper's (1)" }, { "n1_proj_n2", "number", "the paper's (2)" },
     { "dr_proj_z", "number", "the paper's (3)" },

@@ -171,10 +171,10 @@ static void call_hooks(void) {
     } else {
         check_message();
     }
-    if (wh_dialect_tell(&dialect, "estop on", &stops, &failure) == WH_DECODED_MISTAKE) {
+    if (wh_dialect_tell(&dialect, "estop on", &stops, &lines, &failure) == WH_DECODED_MISTAKE) {
         check_message();
     }
-    if (!wh_dialect_part(&dialect, &client)) {
+    if (!wh_dialect_part(&dialect, &client, &lines)) {
         check_message();
     }
 }
