@@ -156,6 +156,14 @@ void wh_controller_tell_conditions(const wh_controller_t *controller, char *text
     wh_host_tell_conditions(controller->host, is_bound ? (size_t)mechanism->index : 0, text, size);
 }
 
+/* Nobody is told of what they are at the start. */
+static void see_conditions(wh_host_t *host) {
+    const wh_layout_t *layout = wh_session_layout(host->session);
+    for (size_t robot = 0; layout && robot < layout->robot_count; ++robot) {
+        host->seen.controllers[robot] = *wh_mcs_controller(&host->session->mcs, robot);
+    }
+}
+
 bool wh_controller_begin_conditions(wh_controller_t *controller) {
     char reason[WH_MCS_CHANGE_BYTES];
     char text[WH_SANDBOX_MESSAGE_BYTES];
@@ -164,7 +172,7 @@ bool wh_controller_begin_conditions(wh_controller_t *controller) {
     const bool has_layout = wh_session_layout(host->session);
     if (controller->leader != controller || !has_layout || dialect->begins.count == 0 ||
         wh_controller_change(controller, &dialect->begins, reason) == WH_OK) {
-        memcpy(host->seen.controllers, host->session->mcs.armed.controllers, sizeof host->seen.controllers);
+        see_conditions(host);
         return true;
     }
     (void)snprintf(text, sizeof text, "begins: %s", reason);

@@ -155,7 +155,7 @@ static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_
 static uint32_t find_doors(const wh_host_t *host, const char *word) {
     const wh_mcs_t *mcs = &host->session->mcs;
     uint32_t doors = 0;
-    for (size_t d = 0; d < mcs->layout->machine.door_count; ++d) {
+    for (size_t d = 0; d < wh_mcs_layout(mcs)->machine.door_count; ++d) {
         doors |= strcmp(wh_mcs_door_word(mcs, d), word) == 0 ? 1U << d : 0;
     }
     return doors;

@@ -304,11 +304,11 @@ static void tell_mode(wh_host_t *host, size_t robot) {
 }
 
 void wh_host_tell_modes(wh_host_t *host) {
-    const wh_mcs_t *mcs = &host->session->mcs;
-    for (size_t robot = 0; mcs->layout && robot < mcs->layout->robot_count; ++robot) {
-        if (memcmp(&host->seen.controllers[robot], &mcs->armed.controllers[robot],
-                   sizeof mcs->armed.controllers[0]) != 0) {
-            host->seen.controllers[robot] = mcs->armed.controllers[robot];
+    const wh_layout_t *layout = wh_session_layout(host->session);
+    for (size_t robot = 0; layout && robot < layout->robot_count; ++robot) {
+        const wh_mcs_controller_t *now = wh_mcs_controller(&host->session->mcs, robot);
+        if (memcmp(&host->seen.controllers[robot], now, sizeof *now) != 0) {
+            host->seen.controllers[robot] = *now;
             tell_mode(host, robot);
         }
     }

@@ -402,6 +402,10 @@ void wh_mcs_tell_controller(const wh_mcs_t *mcs, size_t robot, wh_mcs_tell_value
     tell(user, "override", number, part == 1);
 }
 
+const wh_mcs_controller_t *wh_mcs_controller(const wh_mcs_t *mcs, size_t robot) {
+    return &mcs->armed.controllers[robot];
+}
+
 bool wh_mcs_is_to_end(const wh_mcs_t *mcs) {
     return mcs->stop.refused != 0;
 }

@@ -43,6 +43,9 @@ typedef struct {
 wh_status_t wh_mcs_change_controller(struct wh_mcs *mcs, size_t robot, const wh_mcs_change_t changes[],
                                      size_t count, char reason[WH_MCS_CHANGE_BYTES]);
 
+/* A controller as it is now. */
+const wh_mcs_controller_t *wh_mcs_controller(const struct wh_mcs *mcs, size_t robot);
+
 /* Why the robot may not move; WH_OK: it may. `homes`: an axis beyond its soft limit does not hinder. */
 wh_status_t wh_mcs_refusal(const struct wh_mcs *mcs, size_t robot, bool homes,
                            char reason[WH_MCS_CHANGE_BYTES]);
