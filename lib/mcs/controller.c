@@ -77,7 +77,7 @@ static wh_status_t take_word(wh_mcs_controller_t *to, const word_row_t *row, con
         (void)snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i > 0 ? ", " : "",
                        row->words[i]);
     }
-    return refuse_change(reason, "%s: %.60s (expected %s)", row->name, value, known);
+    return refuse_change(reason, "%s: \"%.60s\" (expected %s)", row->name, value, known);
 }
 
 static bool read_number(const char *text, double *value) {
@@ -128,7 +128,7 @@ static wh_status_t take_exceeded(const wh_mcs_t *mcs, size_t robot, wh_mcs_contr
     }
     const int32_t axis = find_axis(mcs, robot, name, known, sizeof known);
     if (axis == WH_NONE) {
-        return refuse_change(reason, "exceeded: %.60s (expected none or an axis: %s)", name, known);
+        return refuse_change(reason, "exceeded: \"%.60s\" (expected none or an axis: %s)", name, known);
     }
     const bool turns = wh_axis_turns(machine, (size_t)axis);
     if (!place || !read_number(place, &at) || fabs(at) > 1e6) {

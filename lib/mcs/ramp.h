@@ -2,8 +2,8 @@
  *
  * Along the planned way time passes at a rate that falls smoothly from 1 to 0. Speed, acceleration and jerk
  * of each axis stay within its limits, but for a thousandth, or within the part of them that the planned
- * motion uses of any axis. So shares hold, too. A motion whose own end comes first goes to its end. Where a ramp at
- * once would jerk too much, the motion goes on as planned for some slices before it.
+ * motion uses of any axis. So shares hold, too. A motion whose own end comes first goes to its end. Where a
+ * ramp at once would jerk too much, the motion goes on as planned for some slices before it.
  *
  * It uses no heap; a ramp is a plain struct that its owner may copy.
  */
@@ -21,8 +21,8 @@ typedef struct {
 } wh_ramp_t;
 
 /* Plans the stop of a segment that the track plays. False: nothing moves, and it may stand at once.
- * `as_planned`: no axis has more than the planned motion has of it somewhere, for a wafer that must not slip. Cost: as of
- * playing the segment a few times. */
+ * `as_planned`: no axis has more than the planned motion has of it somewhere, for a wafer that must not slip.
+ * Cost: as of playing the segment a few times. */
 bool wh_ramp_begin(wh_ramp_t *ramp, const wh_track_t *track, bool as_planned);
 
 /* Takes the track to the next slice. False: it stands, and no slice was used. */

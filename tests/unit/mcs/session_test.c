@@ -75,9 +75,8 @@ static void every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP",
-         "OK ALARM ALIGN ANGLE AWAIT AXES CALIBRATE CARRIER CLEAR CLOSE CONTINUE DISTANCE EDGE_SCAN FAULT "
-         "FLIP GET HELP"},
+        {"HELP", "OK ALARM ALIGN ANGLE AWAIT AXES CALIBRATE CARRIER CLEAR CLOSE CONTINUE CONTROLLER DISTANCE "
+                 "EDGE_SCAN FAULT FLIP GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
         {"FLIP EE", "ERROR 48 BAD_ARGUMENT: a command's argument is"},
     };

@@ -108,7 +108,7 @@ static void faults_are_made_ready_to_be_taken(void **state) {
         step(880, CLOSED);
         const bool of_none = wh_fault_is_of_wafer(kind) || wh_fault_is_of_door(kind) ||
                              wh_fault_is_of_beam(kind) || wh_fault_is_of_station(kind) ||
-                             kind == WH_FAULT_COMMAND_LOST;
+                             wh_fault_is_of_controller(kind) || kind == WH_FAULT_COMMAND_LOST;
         expect_event(WH_EVENT_FAULT_ARMED, wh_fault_is_of_wafer(kind) ? 0 : WH_NONE, of_none ? WH_NONE : 0,
                      3);
         assert_true(kind != WH_FAULT_WAFER_MISSING || wafers[0].base_from_wafer.r.z == WH_REAL(900 - 1e5));
