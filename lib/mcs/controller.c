@@ -466,6 +466,14 @@ static int push_controller(lua_State *L) {
     return 1;
 }
 
+/* native.override(robot): the part of all its speeds. */
+static int push_override(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const double part = mcs->armed.controllers[robot_at(L, mcs)].override;
+    lua_pushnumber(L, part > 0 ? part : 1);
+    return 1;
+}
+
 /* native.check_controller(robot, homes): raises what refuses the robot's motion; an axis beyond its soft
  * limit does not refuse one that `homes`. */
 static int check_controller(lua_State *L) {
@@ -499,6 +507,7 @@ static int push_was_cut(lua_State *L) {
 
 const luaL_Reg wh_mcs_controller_functions[] = {{"change_controller", change_controller},
                                                 {"controller", push_controller},
+                                                {"override", push_override},
                                                 {"check_controller", check_controller},
                                                 {"mend_controller", mend_controller},
                                                 {"was_cut", push_was_cut},

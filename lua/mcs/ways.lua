@@ -101,7 +101,7 @@ return function(native, arm, tasks)
     if request.is_slowed or not robot or not moves then
       return
     end
-    local share, override = request.share or target.share or tasks.current().share, native.controller(robot).override
+    local share, override = request.share or target.share or tasks.current().share, native.override(robot)
     local speed, acceleration = (share and share[1] or 1) * override, share and share[2] or 1
     request.is_slowed = true
     request.share = (speed ~= 1 or acceleration ~= 1) and { speed, acceleration } or nil
