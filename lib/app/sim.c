@@ -30,7 +30,8 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
+    {"lcm-url", 0, "URL",
+     "Where LCM is (default " WH_NODE_URL "; with a board: nowhere, unless --view is given)", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
     {"outputs", 0, "FILE", "Take the valves from this file, one value per gripper, 0 or 1", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, outputs)},
@@ -266,7 +267,9 @@ static int run(arguments_t *arguments) {
     }
     wh_catch_signals();
     wh_record_arguments_apply(&arguments->record, "sim", false, &record);
-    if (!wh_node_reaches_others(arguments->url) || !wh_recording_open_node(&record, &node, arguments->url)) {
+    const bool is_alone = wh_sim_board_is_wanted(&arguments->board) && !arguments->url && !arguments->view;
+    const char *url = is_alone ? "memq://" : arguments->url;
+    if ((!is_alone && !wh_node_reaches_others(url)) || !wh_recording_open_node(&record, &node, url)) {
         return WH_EXIT_USAGE;
     }
     node.speaker = "sim";

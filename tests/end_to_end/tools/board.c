@@ -1,8 +1,8 @@
 /* The board of tests/firmware/board.h as a process, and a line that does harm.
  *   board pty LINK            a pty with a link to it, as a board at a serial line; prints "ready"
  *   board udp ADDRESS:PORT    sends to the simulator there, with a hello until it answers
- *   lose=N  damage=N  double=N  reset=N  delay=N   harm to every N-th byte, or frame, that it sends; reset after N
- *                             states; the answer N comes 5 ms late */
+ *   lose=N  damage=N  double=N  reset=N  delay=N   harm to every N-th byte, or frame, that it sends; a reset at state
+ *                             N - 1; every N-th answer comes 5 ms late */
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -21,7 +21,7 @@ typedef struct {
 } harm_t;
 
 static harm_t harm;
-static unsigned long bytes_sent, frames_sent, states;
+static unsigned long bytes_sent, frames_sent;
 
 static bool is_turn(unsigned long every, unsigned long count) {
     return every > 0 && count % every == 0;
@@ -51,7 +51,8 @@ static void send_frame(int fd) {
 static void take(int fd, const uint8_t bytes[], ssize_t size) {
     for (ssize_t i = 0; i < size; ++i) {
         if (board_take(bytes[i])) {
-            if (harm.reset > 0 && ++states == harm.reset) {
+            if (harm.reset > 0 && board.state.number + 1 == harm.reset) {
+                harm.reset = 0;
                 board_begin();
             } else {
                 send_frame(fd);
