@@ -34,14 +34,14 @@ WH_REFUSE_PACKING(batch);
  * all of these, for each block 32 x of n1, 32 y, 32 z. A wafer whose pose fails wh_pose_validate, or is
  * beyond 1e15 mm, has NaN there, and so has its sphere: the full check decides on it. Unused entries are
  * infinite. Any alignment of float works; 64 bytes is the fastest. */
-#define WH_BATCH_LANES ((size_t)32)
+#define WH_BATCH_LANES WH_CAST(size_t, 32)
 #define WH_BATCH_NUMBERS(wafer_count) (WH_BATCH_LINES(wafer_count) * 64)
 #define WH_BATCH_LINES(wafer_count)                                                                          \
     (((wafer_count) + (size_t)1023) / 1024 * 2 + ((wafer_count) + (size_t)31) / 32 * 3)
 
 /* The number of words of a set of wafers. Wafer w is bit w % 32 of word w / 32; bits beyond the last wafer
  * are 0. */
-#define WH_BATCH_WORDS(wafer_count) (((wafer_count) + (size_t)31) / 32)
+#define WH_BATCH_WORDS(wafer_count) (((wafer_count) + WH_CAST(size_t, 31)) / 32)
 
 /* The code of the sieve: portable C, or AVX2 for 8 wafers at a time. AVX2 is in builds of gcc or clang for
  * x86-64, on processors that have it. The verdicts are equal. */

@@ -159,7 +159,7 @@ size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_g
 
 /* This number as a constant, for use as an array size. */
 #define WH_GRASP_BUCKETS(wafer_count, gripper_count)                                                         \
-    (8 + 4 * (size_t)(gripper_count) + 5 * (size_t)(wafer_count))
+    (8 + 4 * WH_CAST(size_t, gripper_count) + 5 * WH_CAST(size_t, wafer_count))
 
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
 wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_default);

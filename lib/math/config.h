@@ -171,8 +171,22 @@ typedef char wh_structs_are_packed[sizeof(wh_unpacked_t) > 2 + sizeof(wh_real_t)
 #define WH_REAL_IS_SLOW false
 #endif
 
-/* A literal of the library's number type. */
-#define WH_REAL(literal) ((wh_real_t)(literal))
+/* A cast, in the words of the language: C++ may warn of C's (-Wold-style-cast). */
+#if defined(__cplusplus)
+#define WH_CAST(type, value) (static_cast<type>(value))
+#define WH_ADDRESS(pointer) (reinterpret_cast<uintptr_t>(pointer))
+#else
+#define WH_CAST(type, value) ((type)(value))
+#define WH_ADDRESS(pointer) ((uintptr_t)(pointer))
+#endif
+
+/* A literal of the library's number type. In C++ a cast from double to double is one too many for
+ * -Wuseless-cast; a product with 1 is the number itself, to the bit. */
+#if defined(__cplusplus) && !defined(WH_FLOAT)
+#define WH_REAL(literal) (1.0 * (literal))
+#else
+#define WH_REAL(literal) WH_CAST(wh_real_t, literal)
+#endif
 
 /* It follows `typedef enum`: four bytes, whatever -fshort-enums and similar options say on either side.
  * Debuggers still show the names, and C++ takes the fields without a cast. A compiler without such a word
@@ -343,7 +357,7 @@ WH_HEADER_END
 
 /* True if `index` is one of 0 to count - 1. */
 static inline bool wh_is_index(int32_t index, size_t count) {
-    return index >= 0 && (size_t)index < count;
+    return index >= 0 && WH_CAST(size_t, index) < count;
 }
 
 /* An array by its address: null and 0 for one that is not there. Addresses are compared as numbers, for
@@ -355,8 +369,8 @@ typedef struct {
 
 /* True if the two share a byte. */
 static inline bool wh_extents_overlap(wh_extent_t a, wh_extent_t b) {
-    const uintptr_t one = (uintptr_t)a.first;
-    const uintptr_t other = (uintptr_t)b.first;
+    const uintptr_t one = WH_ADDRESS(a.first);
+    const uintptr_t other = WH_ADDRESS(b.first);
     return one <= other ? other - one < a.bytes && b.bytes > 0 : one - other < b.bytes && a.bytes > 0;
 }
 

@@ -20,7 +20,7 @@ WH_REFUSE_PACKING(slice);
 /* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults
  * and the collision check. It is 128, and 64 with the counts of a bare target. More events are not
  * reported, and the state says so. */
-#define WH_SLICE_EVENTS ((size_t)8 * WH_GRIPPERS)
+#define WH_SLICE_EVENTS (WH_CAST(size_t, 8) * WH_GRIPPERS)
 
 /* The most faults in one command. */
 #define WH_COMMAND_FAULTS 4

@@ -40,8 +40,9 @@ WH_REFUSE_PACKING(snapshot);
  * double, of which 5248 are for faults and 160 for more than 8 doors, and 6086 in float; with the counts of
  * a bare target 10062 and 6006. */
 #define WH_SNAPSHOT_SIZE(wafer_count, gripper_count)                                                         \
-    (1094 + WH_DOORS * sizeof(wh_real_t) + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +            \
-     (57 * sizeof(wh_real_t) + 122) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
+    (1094 + WH_DOORS * sizeof(wh_real_t) + (12 * sizeof(wh_real_t) + 4) * WH_CAST(size_t, wafer_count) +     \
+     (57 * sizeof(wh_real_t) + 122) * WH_CAST(size_t, gripper_count) +                                       \
+     (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
 
 /* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and
  * fills the buckets. If the arrays differ from the earlier ones, `observer` is cleared, because its `user`
