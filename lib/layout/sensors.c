@@ -2,7 +2,7 @@
 #include "layout.h"
 
 bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot) {
-    if (layout->robot_count < 2) {
+    if (!wh_layout_is_shared(layout)) {
         return !layout->machine.carrier;
     }
     const wh_chain_t *chain = &layout->robots[robot].carrier.chain;

@@ -51,7 +51,7 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     beam->station = (int32_t)s;
     wh_reader_scalars(reader, beam);
     wh_reader_scalar_from(reader, "x", beam, -layout->stations[s].retract / 2);
-    beam->y = layout->robot_count > 1 ? read_across_any(reader) : read_across(reader, layout, first);
+    beam->y = wh_layout_is_shared(layout) ? read_across_any(reader) : read_across(reader, layout, first);
     const double high = top + 30 > beam->low ? top + 30 : beam->low + 60;
     wh_reader_scalar_within(reader, "high", beam, high, beam->low + 1, 1e4);
     door->delay_on = beam->delay_on + beam->late;
@@ -234,7 +234,7 @@ void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     const size_t first = layout->beam_count;
     if (wh_reader_enter(reader, "beams")) {
         const size_t count = wh_reader_list(reader);
-        if (layout->robot_count < 2 && !wh_layout_is_usual(layout, 0)) {
+        if (!wh_layout_is_shared(layout) && !wh_layout_is_usual(layout, 0)) {
             wh_reader_fail(reader, NULL, "nothing: beams are for " WH_AXES_USUAL);
         }
         if (count + first > WH_BEAMS) {

@@ -124,7 +124,7 @@ static void read_block(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     if (!wh_reader_open(reader, "block", wh_layout_block_fields)) {
         return;
     }
-    if (layout->robot_count < 2 && !wh_layout_is_usual(layout, 0)) {
+    if (!wh_layout_is_shared(layout) && !wh_layout_is_usual(layout, 0)) {
         wh_reader_fail(reader, NULL, "nothing: blocks are for " WH_AXES_USUAL);
     }
     if (!layout->probe.is_there) {
