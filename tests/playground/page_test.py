@@ -1,5 +1,6 @@
 """The playground in a browser, from disk: build/playground.html, which tests/verify/playground builds."""
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -104,8 +105,10 @@ class Playground(unittest.TestCase):
             page.wait(f"return pictures > {pictures}")
             found = page.js("return times")
             best = {key: min(best[key], found[key]) for key in best}
-        print(f"playground: verdict after {best['answer']:.0f} ms, picture after {best['seen']:.0f} ms, at best of 5")
-        self.assertLess(best["answer"], 300)
+        load = max(1, os.getloadavg()[0] / os.cpu_count())
+        print(f"machine's load {load:.1f} a processor, playground: verdict after {best['answer']:.0f} ms, picture after {best['seen']:.0f} ms, at best of 5")
+        self.assertLess(best["answer"], 300 * load)
+        self.assertLess(best["seen"], 600 * load)
         self.shown()
         self.assertEqual(page.js(f"const W = {FRAME}.Waferhand; return [{FRAME}.mark, W.clock.now, W.stage.shown, W.stage.options.names, W.faults.length]"),
                          [1, 3.5, "top", True, 0])

@@ -19,12 +19,12 @@
 
     const button = (text, title, act, id) => P.element('button', { type: 'button', title, id, click: act }, text);
 
-    /* Shows a text for a moment. */
-    bar.tell = function (text) {
+    /* Shows a text for a moment, or until there is another one. */
+    bar.tell = function (text, stays) {
         bar.note.textContent = text;
         P.say(text);
         clearTimeout(bar.later);
-        bar.later = setTimeout(() => { bar.note.textContent = ''; }, 4000);
+        bar.later = stays ? null : setTimeout(() => { bar.note.textContent = ''; }, 4000);
     };
 
     const nameOf = (path) => path.replace(/^.*\//, '').replace(/\.lua$/, '').replace(/_/g, ' ');

@@ -17,7 +17,7 @@
 
     /* The cell of a link, or the first example. */
     async function open() {
-        const cell = await P.link.read().catch((error) => P.bar.tell(`The link cannot be used: ${error.message}.`));
+        const cell = await P.link.read().catch((error) => P.bar.tell(`The link cannot be used: ${error.message}.`, true));
         if (cell) {
             P.link.open(cell);
         } else {
