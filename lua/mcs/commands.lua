@@ -154,6 +154,7 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
   local BLADE_TIMEOUT = 1
 
   local function flip(name, options)
+    tasks.current().share = lookup.read_share(options)
     local gripper = native.layout.grippers[lookup.gripper(name) and lookup.effector(name)]
     local axis, axes = lookup.axis("flip", gripper.robot), native.axes()
     if not axis then
@@ -161,7 +162,6 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     end
     arm.check_outside()
     check_drops_nothing()
-    tasks.current().share = lookup.read_share(options)
     axes[axis.index] = math.abs(axes[axis.index]) > math.pi / 2 and 0 or math.pi
     alarms.break_flip(gripper.name)
     play { axes = axes }

@@ -153,10 +153,10 @@ function cases.wrong_values()
     end
     return known
   end
-  for word, count in pairs { get = 24, put = 23, swap = 29, ready = 17 } do
+  for word, count in pairs { get = 26, put = 25, swap = 31, ready = 19 } do
     expect(try_fields(word, "A", 1) == count, ("%s has %d fields"):format(word, count))
   end
-  expect(try_fields("map", "A") == 17 and try_fields("align", "P") == 6 and try_fields("move") == 8 and try_fields("line") == 8, "and so on")
+  expect(try_fields("map", "A") == 19 and try_fields("align", "P") == 6 and try_fields("move") == 8 and try_fields("line") == 8, "and so on")
   for field, values in pairs { stroke = with(0, -1, 2000), retract = with(0.5), timeout = with(-1), wait = with(-1),
     release = with(4, -4), retries = with(0.5, -1, 101), pickup_speed = with(0, 501), map_speed = with(0),
     pickup_acceleration = with(-1, 1e-7), offset = with(-1, 7), vacuum_delay = with(3601) } do
