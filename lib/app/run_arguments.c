@@ -363,6 +363,19 @@ static int hand_on(const wh_run_arguments_t *arguments, wh_script_run_t *run, wh
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
+/* The first option that shows, or plays, what robots of times alone do not have; null: none is given. */
+static const char *find_axes_option(const wh_run_arguments_t *arguments) {
+    const char *table = wh_run_table_wanted(arguments);
+    const wh_run_counting_t *counting = &arguments->counting;
+    return table                         ? table
+           : counting->strict            ? "--strict"
+           : counting->verify > 0        ? "--verify"
+           : arguments->segments_path    ? "--segments"
+           : arguments->files.scene      ? "--gltf"
+           : arguments->errors.count > 0 ? "--error"
+                                         : NULL;
+}
+
 void wh_run_arguments_take(wh_run_arguments_t *arguments) {
     arguments->run.parameters = arguments->parameters.items;
     arguments->run.parameter_count = arguments->parameters.count;
@@ -372,6 +385,7 @@ void wh_run_arguments_take(wh_run_arguments_t *arguments) {
     arguments->run.limits.memory_bytes = (size_t)(arguments->memory_mib * 1048576);
     arguments->run.counts = counts_of(&arguments->counting);
     arguments->run.verify = arguments->counting.verify;
+    arguments->run.needs_axes = find_axes_option(arguments);
 }
 
 void wh_run_arguments_free(wh_run_arguments_t *arguments) {

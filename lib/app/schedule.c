@@ -22,8 +22,10 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout.path)},
     {"arms", 0, "ROBOT=N", "How many arms a robot has, 1 or 2; may be given again", WH_OPTION_LIST,
      .variable = offsetof(arguments_t, arms)},
-    {"play", 0, NULL, "Also play it in the layout by its timed robots, if nothing was found", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, play)},
+    {"play", 0, NULL,
+     "Also play it in the layout by its timed robots, if it can be carried out: nothing but stays beyond "
+     "windows was found",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, play)},
     {"json", 0, NULL, "Print one JSON object instead of tables", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, json)},
     {0}};
@@ -103,7 +105,7 @@ static int look_at(const arguments_t *arguments, const wh_schedule_t *schedule, 
     int status = WH_EXIT_USAGE;
     if (!wh_schedule_check(&report, schedule, &given)) {
         fprintf(stderr, "%s\n", report.message);
-    } else if (arguments->play && wh_schedule_first(&report)) {
+    } else if (arguments->play && wh_schedule_first_bar(&report)) {
         fprintf(stderr, "--play: %s: not played, for it cannot be carried out\n", schedule->path);
         status = conclude(arguments, &report, &play);
     } else if (arguments->play && !wh_schedule_play(&play, schedule, tool)) {

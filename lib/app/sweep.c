@@ -26,8 +26,9 @@ static const wh_option_t options[] = {
      "Run with params.NAME as each of these words or numbers, such as rule=backward,swap; goes with ranges",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, each)},
     {"by", 0, "PERCENT",
-     "Run once as it is, and once for each mechanism and station of the cell, which takes PERCENT less time; "
-     "tell what each gains, the greatest first",
+     "Run once as it is, and once for each mechanism and station of the cell, and for the parallel stations "
+     "of a "
+     "flow's step together, which take PERCENT less time; tell what each gains, the greatest first",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, by)},
     {"until-steady", 0, NULL, WH_RUN_STEADY_HELP, WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.run.until_steady)},

@@ -5,6 +5,7 @@
 
 #include "../text/array.h"
 #include "failed.h"
+#include "locks.h"
 #include "outside.h"
 #include "robots.h"
 #include "stations.h"
@@ -134,6 +135,7 @@ static void play_instant(wh_flow_state_t *state, const wh_flow_rules_t *rules, u
                 begun = begin_robot(state, rules, r, asked) || begun;
             }
         }
+        wh_flow_locks_turn_for_kept(state);
     } while (is_any_over(state) && !state->cause);
 }
 

@@ -200,11 +200,10 @@ static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event)
 }
 
 static void note_way(measure_t *measure, const wh_flow_event_t *event) {
-    wh_flow_figures_t *figures = measure->figures;
+    wh_flow_ways_t *ways = &measure->figures->ways;
     if (measure->keeps == WH_FLOW_WAYS && event->end_us > event->begin_us && event->from != WH_FLOW_NONE) {
-        figures->ways =
-            wh_array_grow(figures->ways, figures->way_count, &figures->way_capacity, sizeof *figures->ways);
-        figures->ways[figures->way_count++] =
+        ways->items = wh_array_grow(ways->items, ways->count, &ways->capacity, sizeof *ways->items);
+        ways->items[ways->count++] =
             (wh_flow_way_t){event->robot, event->from, event->station, event->begin_us, event->end_us};
     }
 }
@@ -390,8 +389,42 @@ static void keep_fate(wh_flow_figures_t *figures, const wh_flow_state_t *state, 
     }
 }
 
-static void end(void *context, const wh_flow_state_t *state) {
-    measure_t *measure = context;
+static void keep_running(wh_flow_runnings_t *running, int32_t place, int32_t wafer, int64_t begin_us) {
+    running->items =
+        wh_array_grow(running->items, running->count, &running->capacity, sizeof *running->items);
+    running->items[running->count++] = (wh_flow_running_t){place, wafer, begin_us};
+}
+
+/* Keeps what goes on in the place: nobody tells its end. */
+static void note_running(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t number) {
+    const wh_flow_place_t *place = &state->places[number];
+    const wh_flow_station_t *of = &state->tool->stations[state->tool->place_stations[number]];
+    const int32_t wafer = place->wafer;
+    if (of->is_real) {
+        return;
+    }
+    if (place->clean_us != WH_FLOW_NEVER) {
+        keep_running(&figures->running, number, WH_FLOW_NONE, place->clean_us - of->clean_us);
+    }
+    if (wafer == WH_FLOW_NONE || state->wafers[wafer].is_over ||
+        state->wafers[wafer].done_us <= state->now_us) {
+        return;
+    }
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int64_t processed_us = at->done_us - at->clean_us;
+    if (at->process_us > 0 && processed_us - at->process_us <= state->now_us) {
+        keep_running(&figures->running, number, wafer, processed_us - at->process_us);
+    }
+}
+
+static void note_all_running(wh_flow_figures_t *figures, const wh_flow_state_t *state) {
+    for (size_t p = 0; p < state->tool->place_count; ++p) {
+        note_running(figures, state, (int32_t)p);
+    }
+}
+
+/* Keeps how each wafer's route ended, and how long it has stayed. */
+static void end_wafers(measure_t *measure, const wh_flow_state_t *state) {
     wh_flow_event_t stay;
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
         if (wh_flow_open_stay(state, w, &stay) && !state->tool->stations[stay.station].is_real) {
@@ -399,6 +432,11 @@ static void end(void *context, const wh_flow_state_t *state) {
         }
         keep_fate(measure->figures, state, w);
     }
+}
+
+static void end(void *context, const wh_flow_state_t *state) {
+    measure_t *measure = context;
+    end_wafers(measure, state);
     for (size_t p = 0; p < state->tool->place_count; ++p) {
         const int32_t wafer = state->places[p].wafer;
         take_back(measure, state, (int32_t)p);
@@ -411,6 +449,7 @@ static void end(void *context, const wh_flow_state_t *state) {
     }
     if (measure->open) {
         keep_open_visits(measure, state);
+        note_all_running(measure->figures, state);
     }
     measure->figures->end_us = state->now_us;
 }
@@ -501,7 +540,8 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->gains);
     free(figures->visits);
     free(figures->doings);
-    free(figures->ways);
+    free(figures->ways.items);
+    free(figures->running.items);
     free(figures->came_us);
     wh_flow_result_close(&figures->result);
     memset(figures, 0, sizeof *figures);

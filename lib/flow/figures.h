@@ -56,11 +56,27 @@ typedef struct {
     int64_t begin_us, end_us;
 } wh_flow_doing_t;
 
+/* A process or a clean that goes on when the flow ends, in a station of times alone. */
+typedef struct {
+    int32_t place, wafer; /* wafer: in its process; WH_FLOW_NONE: a clean */
+    int64_t begin_us;
+} wh_flow_running_t;
+
+typedef struct {
+    wh_flow_running_t *items;
+    size_t count, capacity;
+} wh_flow_runnings_t;
+
 /* A robot's way between two stations; one that takes no time is left out. */
 typedef struct {
     int32_t robot, from, to;
     int64_t begin_us, end_us;
 } wh_flow_way_t;
+
+typedef struct {
+    wh_flow_way_t *items; /* null: not asked for */
+    size_t count, capacity;
+} wh_flow_ways_t;
 
 typedef struct {
     const wh_flow_tool_t *tool;
@@ -78,9 +94,9 @@ typedef struct {
     int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
-    wh_flow_way_t *ways; /* none if not asked for */
-    size_t way_count, way_capacity;
-    wh_flow_part_t *parts; /* of the critical path, the longest first; none with the sums alone */
+    wh_flow_runnings_t running; /* likewise */
+    wh_flow_ways_t ways;        /* none if not asked for */
+    wh_flow_part_t *parts;      /* of the critical path, the longest first; none with the sums alone */
     size_t part_count;
     wh_flow_gain_t *gains; /* by robot, then by station; null if not asked for */
     uint64_t hash;         /* of all that was told, in its order */

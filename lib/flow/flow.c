@@ -35,6 +35,14 @@ static int64_t *list_ends(const wh_flow_state_t *state, size_t *count) {
     return ends_us;
 }
 
+/* The fewest wafers whose middle third says anything. */
+#define FEWEST 9
+
+static double mean_of(const int64_t ends_us[], size_t count) {
+    const size_t first = count / 3, last = count - count / 3 - 1;
+    return count < FEWEST ? 0 : (double)(ends_us[last] - ends_us[first]) / (double)(last - first);
+}
+
 void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     const wh_flow_state_t *state = &engine->state;
     const wh_flow_plan_t *plan = state->plan;
@@ -61,6 +69,7 @@ void wh_flow_engine_result(wh_flow_engine_t *engine, wh_flow_result_t *result) {
     } else {
         result->no_cycle = wh_text_copy("the flow did not go on to its end");
     }
+    result->mean_us = mean_of(ends_us, result->over);
     free(ends_us);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(state);

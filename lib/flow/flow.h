@@ -18,6 +18,7 @@ typedef struct {
     int64_t cycle_us;    /* over `period` wafers; WH_FLOW_NEVER if there is no steady cycle */
     int32_t period;
     char *no_cycle; /* why there is none; null: there is one */
+    double mean_us; /* between two wafers' ends, over the middle third of at least nine; 0: there are fewer */
     bool is_steady; /* it was cut because it was steady: the cycle is that of a lot without end */
     size_t over;    /* wafers at their ends, without dummies */
     size_t left;    /* wafers that are not at their ends, with dummies */

@@ -1,4 +1,4 @@
-#include "path.h"
+#include "figures.h"
 
 #include "../text/array.h"
 
@@ -49,15 +49,20 @@ wh_flow_gain_t *wh_flow_gains(const wh_flow_tool_t *tool, const wh_flow_plan_t *
     wh_flow_gain_t *gains = wh_array_new(robots + stations, sizeof *gains);
     for (size_t i = 0; i < robots + stations; ++i) {
         wh_flow_tool_t other;
-        wh_flow_result_t result;
+        wh_flow_figures_t figures;
         const int32_t robot = i < robots ? (int32_t)i : WH_FLOW_NONE;
         const int32_t station = i < robots ? WH_FLOW_NONE : (int32_t)(i - robots);
         wh_flow_tool_copy(&other, tool);
         wh_flow_shorten(&other, robot, station, LESS_PPM);
-        wh_flow_play(&other, plan, NULL, &result);
-        gains[i] = (wh_flow_gain_t){robot, station, result.end, result.makespan_us,
-                                    result.period > 0 ? (double)result.cycle_us / result.period : -1};
-        wh_flow_result_close(&result);
+        wh_flow_measure(&other, plan, WH_FLOW_SUMS, &figures);
+        const wh_flow_result_t *result = &figures.result;
+        gains[i] = (wh_flow_gain_t){robot,
+                                    station,
+                                    result->end,
+                                    result->makespan_us,
+                                    result->period > 0 ? (double)result->cycle_us / result->period : -1,
+                                    figures.stays.late_count};
+        wh_flow_figures_close(&figures);
         wh_flow_tool_close(&other);
     }
     return gains;

@@ -109,6 +109,34 @@ static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, 
     }
 }
 
+/* A free robot in front of the lock is told to bring a wafer that it has. */
+static bool is_told_to_bring(const wh_flow_robot_state_t *robot, int32_t lock) {
+    const wh_flow_order_t *wish = &robot->wish;
+    const bool has_it = robot->arms[0] == wish->wafer || robot->arms[1] == wish->wafer;
+    return robot->action == WH_FLOW_IDLE && robot->has_wish && wish->what == WH_FLOW_BRING &&
+           wish->at == lock && robot->station == lock && has_it;
+}
+
+/* Lists and functions have a robot bring a wafer that it keeps, which waits for the pressure alone. */
+static bool is_bringing(const wh_flow_state_t *state, int32_t lock, int32_t robot) {
+    const wh_flow_order_t *wish = &state->robots[robot].wish;
+    const bool is_listed = state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN;
+    if (!is_listed || !is_told_to_bring(&state->robots[robot], lock)) {
+        return false;
+    }
+    const int32_t place = wh_flow_target(state, robot, wish->wafer, lock, 0, lock).place;
+    return place != WH_FLOW_NONE && state->places[place].wafer == WH_FLOW_NONE;
+}
+
+static void want_kept(const wh_flow_state_t *state, int32_t lock, wants_t *able) {
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
+        if (is_bringing(state, lock, r)) {
+            want(able, state->tool->sides[wh_flow_of(state->tool, r, lock)],
+                 state->wafers[state->robots[r].wish.wafer].done_us);
+        }
+    }
+}
+
 /* The side to which the lock should turn, or that it has: for transfers into it that have begun, else for
  * wafers that could be carried into or out of it, else for those in it; among several the one done longest
  * decides. */
@@ -125,6 +153,7 @@ static wh_flow_side_t turn_to(const wh_flow_state_t *state, int32_t lock) {
     }
     if (kinds[0].since_us[other] == WH_FLOW_NEVER) {
         want_all(state, lock, &kinds[1], &kinds[2]);
+        want_kept(state, lock, &kinds[1]);
     }
     for (size_t i = 0; i < 3; ++i) {
         if (kinds[i].since_us[0] != WH_FLOW_NEVER || kinds[i].since_us[1] != WH_FLOW_NEVER) {
@@ -156,5 +185,17 @@ void wh_flow_lock_turn(wh_flow_state_t *state, int32_t number) {
     const wh_flow_side_t side = turn_to(state, number);
     if (side != station->side) {
         (void)wh_flow_lock_pump(state, number, side);
+    }
+}
+
+void wh_flow_locks_turn_for_kept(wh_flow_state_t *state) {
+    for (int32_t i = 0; !state->plan->turns && i < (int32_t)state->tool->station_count; ++i) {
+        bool is_awaited = false;
+        for (int32_t r = 0; state->tool->stations[i].is_lock && r < (int32_t)state->tool->robot_count; ++r) {
+            is_awaited = is_awaited || is_bringing(state, i, r);
+        }
+        if (is_awaited) {
+            wh_flow_lock_turn(state, i);
+        }
     }
 }

@@ -12,4 +12,8 @@ bool wh_flow_lock_pump(wh_flow_state_t *state, int32_t station, wh_flow_side_t s
  * into or out of it, else for those in it; or by its own list. */
 void wh_flow_lock_turn(wh_flow_state_t *state, int32_t station);
 
+/* Robots have been asked: locks turn for the wafers that lists and functions have them bring from their
+ * arms, if nobody has begun anything for another side. */
+void wh_flow_locks_turn_for_kept(wh_flow_state_t *state);
+
 #endif

@@ -40,6 +40,7 @@ typedef struct {
     wh_flow_end_t end;
     int64_t makespan_us;
     double cycle_us; /* of a wafer; below 0: there is no steady one */
+    size_t late;     /* stays beyond windows */
 } wh_flow_gain_t;
 
 /* All events of a flow, in the order of their ends; those without duration are left out. */

@@ -62,10 +62,10 @@ __attribute__((format(printf, 1, 2))) static char *problem_of(const char *format
     return wh_text_copy(text);
 }
 
-/* True if a robot carries from this station to one of the step's, from side to side. */
-static bool is_carried(const wh_flow_tool_t *tool, int32_t from, const wh_flow_step_t *step) {
+/* True if a robot with so many arms carries from this station to one of the step's, from side to side. */
+static bool is_carried(const wh_flow_tool_t *tool, int32_t from, const wh_flow_step_t *step, int32_t arms) {
     for (size_t r = 0; r < tool->robot_count; ++r) {
-        if (tool->serves[wh_flow_of(tool, (int32_t)r, from)] &&
+        if (tool->robots[r].arms >= arms && tool->serves[wh_flow_of(tool, (int32_t)r, from)] &&
             wh_flow_step_is_served(tool, step, (int32_t)r)) {
             return true;
         }
@@ -86,13 +86,19 @@ static char *check_step(const wh_flow_step_t *step, const wh_flow_route_t *route
                             route->name, k, (int)step->kept_empty, (int)places);
 }
 
+/* `is_hot`: the second arm alone takes the wafer there. */
 static char *check_way(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, const wh_flow_route_t *route,
-                       const wh_flow_step_t *next, size_t k, int32_t from) {
+                       const wh_flow_step_t *next, size_t k, int32_t from, bool is_hot) {
     if (next->station_count == 1 && next->stations[0] == from && !plan->is_given) {
         return problem_of("route %s: step %zu is %s again (expected another station)", route->name, k,
                           tool->stations[from].name);
     }
-    if (!is_carried(tool, from, next)) {
+    if (is_hot && is_carried(tool, from, next, 1) && !is_carried(tool, from, next, 2)) {
+        return problem_of(
+            "route %s: no robot with two arms carries a wafer from %s, which is hot, to step %zu, %s",
+            route->name, tool->stations[from].name, k, tool->stations[next->stations[0]].name);
+    }
+    if (!is_carried(tool, from, next, 1)) {
         return problem_of("route %s: no robot carries a wafer from %s to step %zu, %s", route->name,
                           tool->stations[from].name, k, tool->stations[next->stations[0]].name);
     }
@@ -106,7 +112,8 @@ static char *check_route(const wh_flow_plan_t *plan, const wh_flow_route_t *rout
         problem = check_step(&route->steps[k], route, k, tool);
         const wh_flow_step_t *before = &route->steps[k - 1];
         for (size_t i = 0; k > 1 && i < before->station_count && !problem; ++i) {
-            problem = check_way(plan, tool, route, &route->steps[k], k, before->stations[i]);
+            problem =
+                check_way(plan, tool, route, &route->steps[k], k, before->stations[i], before->second_arm);
         }
     }
     return problem;
@@ -201,11 +208,11 @@ static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32
     const wh_flow_route_t *route = wh_flow_route_of(plan, w);
     const wh_flow_step_t *last = &route->steps[route->step_count - 1];
     char *problem =
-        check_way(plan, tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home]);
+        check_way(plan, tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home], false);
     find_back(plan, tool, w);
     for (size_t i = 0; plan->wafers[w].goes_back && i < last->station_count && !problem; ++i) {
         problem = check_way(plan, tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
-                            last->stations[i]);
+                            last->stations[i], last->second_arm);
     }
     problem = problem ? problem : check_recipe(plan, tool, w);
     return problem ? problem : check_end(plan, tool, w);

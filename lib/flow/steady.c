@@ -128,7 +128,26 @@ static size_t find_likely(const ends_t *ends, size_t shortest) {
     return 0;
 }
 
-static char *tell_no_period(const ends_t *ends) {
+/* The period that a tool like this is likely to have: the places of a step that processes, as often as wafers
+ * between two cleans of one; up to LONGEST. */
+static size_t natural_period(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
+    size_t longest = 1;
+    for (size_t r = 0; r < plan->route_count; ++r) {
+        for (size_t k = 1; k < plan->routes[r].step_count; ++k) {
+            const wh_flow_step_t *step = &plan->routes[r].steps[k];
+            size_t places = 0, wafers = 1;
+            for (size_t i = 0; i < step->station_count && k + 1 < plan->routes[r].step_count; ++i) {
+                const wh_flow_station_t *station = &tool->stations[step->stations[i]];
+                places += wh_flow_step_us(step, station, plan->wafers[0].recipe) > 0 ? (size_t)station->slots : 0;
+                wafers = (size_t)station->clean_after > wafers ? (size_t)station->clean_after : wafers;
+            }
+            longest = places * wafers > longest ? places * wafers : longest;
+        }
+    }
+    return longest < LONGEST ? longest : LONGEST;
+}
+
+static char *tell_no_period(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const ends_t *ends) {
     char text[200];
     size_t shortest = 1;
     while (shortest <= LONGEST && wafers_for(shortest) <= ends->count) {
@@ -143,8 +162,11 @@ static char *tell_no_period(const ends_t *ends) {
                        "too few wafers: their ends seem to repeat every %zu, which %zu would show", likely,
                        wafers_for(likely));
     } else {
-        (void)snprintf(text, sizeof text, "too few wafers: %zu would show any that repeats every 1 to %d",
-                       wafers_for(LONGEST), LONGEST);
+        const size_t natural = natural_period(tool, plan);
+        const size_t next = 2 * shortest < LONGEST ? 2 * shortest : LONGEST;
+        const size_t period = natural >= shortest ? natural : next;
+        (void)snprintf(text, sizeof text, "too few wafers: %zu would show any that repeats every %s%zu%s",
+                       wafers_for(period), period > 1 ? "1 to " : "", period, period > 1 ? "" : " wafer");
     }
     return wh_text_copy(text);
 }
@@ -156,7 +178,7 @@ char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
     const ends_t ends = {ends_us, count, wh_flow_has_real(tool)};
     *period = find_period(&ends, cycle_us);
     if (*period == 0) {
-        return tell_no_period(&ends);
+        return tell_no_period(tool, plan, &ends);
     }
     const double wafer_us = (double)*cycle_us / *period;
     const int32_t station = find_outrun(tool, plan, wafer_us, &least_us);

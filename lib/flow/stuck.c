@@ -70,6 +70,23 @@ static void say_laden(const wh_flow_state_t *state, int32_t robot, text_t *text)
         has == WH_FLOW_NONE ? "no arm for it" : state->plan->wafers[has].name);
 }
 
+/* The pressure of a lock, if that is not the one of a robot that would carry the wafer. `lies`: out of it. */
+static void say_pressure(const wh_flow_state_t *state, int32_t wafer, int32_t station, bool lies,
+                         text_t *text) {
+    const wh_flow_tool_t *tool = state->tool;
+    const wh_flow_side_t side = state->stations[station].side;
+    bool is_other = false;
+    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
+        const bool goes = lies ? wh_flow_is_carrier(state, r, wafer)
+                               : state->wafers[wafer].robot == r || wh_flow_is_carrier(state, r, wafer);
+        const size_t of = wh_flow_of(tool, r, station);
+        is_other = is_other || (goes && tool->serves[of] && !wh_flow_sides_agree(tool->sides[of], side));
+    }
+    if (tool->stations[station].is_lock && is_other) {
+        say(text, " (at %s)", wh_flow_side_words[side]);
+    }
+}
+
 static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text) {
     if (state->stations[station].down_us != WH_FLOW_NEVER) {
         say(text, " (down for ever)");
@@ -116,6 +133,7 @@ static void say_next(const wh_flow_state_t *state, int32_t wafer, int32_t number
     const int32_t other = find_other(state, wafer, station);
     say(text, "%s", station->name);
     say_down(state, number, text);
+    say_pressure(state, wafer, number, false, text);
     if (other != WH_FLOW_NONE) {
         say(text, ", where %s is", state->plan->wafers[other].name);
         return;
@@ -137,6 +155,7 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
     } else {
         say(text, "in %s", station_name(state, state->tool->place_stations[at->place]));
         say_down(state, state->tool->place_stations[at->place], text);
+        say_pressure(state, wafer, state->tool->place_stations[at->place], true, text);
     }
     for (size_t i = 0; next && i < next->station_count; ++i) {
         say(text, "%s", i == 0 ? " waits for " : " or ");
@@ -194,6 +213,38 @@ static void say_lots(const wh_flow_state_t *state, text_t *text) {
     }
 }
 
+/* "{ LLA, PM1, W3 }", as it stands in a list. */
+static void say_line(const wh_flow_state_t *state, const wh_flow_line_t *line, text_t *text) {
+    const char *from = line->from == WH_FLOW_NONE ? "keep" : station_name(state, line->from);
+    const char *to = line->to == WH_FLOW_NONE ? "keep" : station_name(state, line->to);
+    if (line->what == WH_FLOW_PUMP) {
+        say(text, "{ pump, %s, %s }", to, wh_flow_side_words[line->side]);
+        return;
+    }
+    say(text, "{ %s, %s", from, to);
+    if (line->wafer != WH_FLOW_NONE) {
+        say(text, ", %s", state->plan->wafers[line->wafer].name);
+    }
+    say(text, " }");
+}
+
+/* The line that the robot has come to: "; R1 stands at line 3 of its list, { LLA, PM1 }". */
+static void say_list(const wh_flow_state_t *state, int32_t robot, text_t *text) {
+    const wh_flow_list_t *list = &state->plan->lists[robot];
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const bool is_under_way = at->action != WH_FLOW_IDLE && at->action != WH_FLOW_MOVING;
+    const int32_t number = is_under_way && at->mark > 0 ? at->mark - 1 : at->mark;
+    say(text, "; %s ", state->tool->robots[robot].name);
+    if (list->count == 0) {
+        say(text, "has no list");
+    } else if ((size_t)number >= list->count) {
+        say(text, "has come to the end of its list");
+    } else {
+        say(text, "stands at line %d of its list, ", (int)number + 1);
+        say_line(state, &list->lines[number], text);
+    }
+}
+
 /* The wafers inside; if there are none, those that cannot leave their first places. */
 char *wh_flow_stuck_text(const wh_flow_state_t *state) {
     text_t text = {0};
@@ -204,6 +255,9 @@ char *wh_flow_stuck_text(const wh_flow_state_t *state) {
     say_lots(state, &text);
     if (text.length == 0) {
         say(&text, "no robot takes the next wafer out of its first place");
+    }
+    for (int32_t r = 0; state->plan->rule == WH_FLOW_LISTS && r < (int32_t)state->tool->robot_count; ++r) {
+        say_list(state, r, &text);
     }
     return text.text;
 }

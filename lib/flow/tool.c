@@ -36,6 +36,18 @@ void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_
     }
 }
 
+static int64_t longer_us(int64_t process_us, int64_t us) {
+    return process_us <= 0 ? process_us : process_us + us > 1 ? process_us + us : 1;
+}
+
+void wh_flow_lengthen(wh_flow_station_t *station, int64_t us) {
+    station->process_us = longer_us(station->process_us, us);
+    for (size_t i = 0; station->has_recipes && i < WH_FLOW_RECIPES; ++i) {
+        station->by_recipe[i].process_us = longer_us(station->by_recipe[i].process_us, us);
+    }
+    station->off_us += us;
+}
+
 void wh_flow_tool_number(wh_flow_tool_t *tool) {
     tool->place_count = 0;
     for (size_t i = 0; i < tool->station_count; ++i) {

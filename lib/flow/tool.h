@@ -72,6 +72,7 @@ typedef struct {
     bool is_real;              /* its processes, cleans and pumps are told from outside */
     wh_flow_work_t works;      /* its own chuck or clamp can do this; else WH_FLOW_WORK_NONE */
     int32_t less_ppm;          /* processes of steps, too, take so much less: see wh_flow_shorten */
+    int64_t off_us;            /* processes of steps, too, are longer by this: see wh_flow_lengthen */
     wh_flow_side_t side;       /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
@@ -152,6 +153,9 @@ static inline int64_t wh_flow_less_us(int64_t us, int32_t ppm) {
  * cleans, pumps and doors), takes so many millionths less. The other one is WH_FLOW_NONE. */
 void wh_flow_shorten(wh_flow_tool_t *tool, int32_t robot, int32_t station, int32_t ppm);
 
+/* Each process of a station, in any route, takes so much longer, or shorter; at least 1 us is left. */
+void wh_flow_lengthen(wh_flow_station_t *station, int64_t us);
+
 /* To be called once after each station has its number of slots: numbers the places. */
 void wh_flow_tool_number(wh_flow_tool_t *tool);
 
@@ -201,9 +205,12 @@ bool wh_flow_is_processing(const wh_flow_station_t *station);
 /* How long a wafer of this recipe is processed in this station in this step of its route. */
 static inline int64_t wh_flow_step_us(const wh_flow_step_t *step, const wh_flow_station_t *station,
                                       int32_t recipe) {
-    return step->process_us != WH_FLOW_NONE
-               ? step->process_us
-               : wh_flow_treatment(station, step->recipe > 0 ? step->recipe : recipe).process_us;
+    const int64_t own_us = step->process_us;
+    if (own_us == WH_FLOW_NONE) {
+        return wh_flow_treatment(station, step->recipe > 0 ? step->recipe : recipe).process_us;
+    }
+    const int64_t us = wh_flow_less_us(own_us, station->less_ppm) + station->off_us;
+    return own_us <= 0 ? own_us : us > 1 ? us : 1;
 }
 
 /* The number of the recipe of this name; 0: there is none. */

@@ -95,6 +95,19 @@ size_t wh_layout_paced(const wh_layout_t *layout) {
     return find(layout, SIZE_MAX, &found);
 }
 
+size_t wh_layout_paced_station(const wh_layout_t *layout, size_t station) {
+    const size_t count = wh_layout_paced(layout);
+    for (size_t i = 0; i < count; ++i) {
+        paced_t of = nothing;
+        (void)find(layout, i, &of);
+        const bool is_station = of.robot == WH_NONE && of.gripper == WH_NONE && of.door == WH_NONE;
+        if (is_station && of.station == (int32_t)station) {
+            return i;
+        }
+    }
+    return SIZE_MAX;
+}
+
 void wh_layout_name_paced(const wh_layout_t *layout, size_t i, char name[WH_LAYOUT_PACED_BYTES]) {
     const wh_flow_tool_t *tool = layout->tool;
     paced_t of = nothing;

@@ -10,6 +10,9 @@
  * pins and flippers, doors, and the stations that take time. */
 size_t wh_layout_paced(const wh_layout_t *layout);
 
+/* The number of a station of the layout among them; SIZE_MAX: it takes no time. */
+size_t wh_layout_paced_station(const wh_layout_t *layout, size_t station);
+
 /* The name of number `i` of them: that of the robot, the gripper, the door or the station, or "chucks". */
 void wh_layout_name_paced(const wh_layout_t *layout, size_t i, char name[WH_LAYOUT_PACED_BYTES]);
 

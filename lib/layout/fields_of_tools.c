@@ -9,6 +9,18 @@ const wh_reader_field_t wh_layout_timed_fields[] = {
     {"stations", "table<string, waferhand.timed_station>", "the stations by name", true},
     {"routes", "table<string, waferhand.route>",
      "by which wafers go, by name: a schedule is held against them; flows have their own", false},
+    {"study", "waferhand.timed_study", "what trials draw: see waferhand study", false},
+    END};
+
+const wh_reader_field_t wh_layout_timed_study_fields[] = {
+    {"shape", WORD, "how errors are spread", false, APART_WORD(WH_SHAPE_NORMAL, wh_layout_shape_words)},
+    {"timing", "waferhand.timed_timing", "of processes", false},
+    END};
+
+const wh_reader_field_t wh_layout_timed_timing_fields[] = {
+    {"process", NUMBER, "s by which each process of a station is longer or shorter in a trial", false,
+     APART(0, WH_ERRORS_MOST_PROCESS_S, 0)},
+    {"shape", WORD, "how that is spread", false, SHAPE},
     END};
 
 const wh_reader_field_t wh_layout_timed_robot_fields[] = {
@@ -20,7 +32,7 @@ const wh_reader_field_t wh_layout_timed_robot_fields[] = {
     {"place", TIMES, "s, or by station, with `default`", true},
     {"move", TIMES, "s, or by pair as in [\"A>B\"], with `default`; of a pair that is there once, both ways",
      false},
-    {"swap", TIMES, "s, or by station", false, .otherwise = "pick, move and place together"},
+    {"swap", TIMES, "s, or by station", false, .otherwise = "pick, the default move and place together"},
     {"speed", NUMBER, "mm/s, in place of move: along the straight way between the stations' places", false,
      APART(1e-3, 1e6, ASKED)},
     END};

@@ -94,6 +94,8 @@ extern const wh_reader_field_t wh_layout_valve_fields[];
 extern const wh_reader_field_t wh_layout_rim_width_fields[];
 extern const wh_reader_field_t wh_layout_beam_width_fields[];
 extern const wh_reader_field_t wh_layout_timed_fields[];
+extern const wh_reader_field_t wh_layout_timed_study_fields[];
+extern const wh_reader_field_t wh_layout_timed_timing_fields[];
 extern const wh_reader_field_t wh_layout_timed_robot_fields[];
 extern const wh_reader_field_t wh_layout_timed_station_fields[];
 extern const wh_reader_field_t wh_layout_timed_by_fields[];

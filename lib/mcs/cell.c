@@ -233,6 +233,31 @@ static void evaluate_layout(lua_State *L, wh_mcs_t *mcs, const char *path) {
     }
 }
 
+/* An option does not go with this cell. */
+static void refuse_unwanted(lua_State *L, const wh_mcs_t *mcs, const wh_layout_t *layout) {
+    if (layout->tool && mcs->wanted.needs_axes) {
+        (void)luaL_error(L, "%s: its robots are times alone (expected robots with axes for %s)", layout->path,
+                         mcs->wanted.needs_axes);
+    }
+    if (layout->collision && !mcs->wanted.without_collisions && mcs->wanted.counts == WH_MCS_COUNT_STRICT) {
+        (void)luaL_error(L,
+                         "%s: collision = true (--counted does not look for collisions in slices that it "
+                         "leaves out: expected a run without --strict, or without --counted)",
+                         layout->path);
+    }
+}
+
+/* Some of the cell takes less time than the layout says; a trial draws the processes of a tool of times
+ * alone. */
+static void change_times(const wh_mcs_t *mcs, wh_layout_t *layout) {
+    for (size_t i = 0; i < mcs->wanted.faster_count; ++i) {
+        wh_layout_hasten(layout, mcs->wanted.faster[i], mcs->wanted.faster_share);
+    }
+    if (layout->tool && layout->errors && mcs->wanted.trial) {
+        wh_trial_draw_tool(layout, mcs->wanted.trial);
+    }
+}
+
 /* native.cell(path): reads the layout and sets up the run; returns the layout as a table. */
 static int set_up_cell(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
@@ -252,6 +277,7 @@ static int set_up_cell(lua_State *L) {
     const char *path = wh_mcs_push_path(L, mcs, name);
     evaluate_layout(L, mcs, path);
     wh_layout_t *layout = wh_layout_read(L, path);
+    refuse_unwanted(L, mcs, layout);
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) == LUA_TTABLE) {
         wh_layout_read_own_study(L, mcs->script, layout);
     }
@@ -260,15 +286,7 @@ static int set_up_cell(lua_State *L) {
         wh_layout_give_errors(L, layout, mcs->wanted.errors, mcs->wanted.error_count);
     }
     layout->collision = layout->collision && !mcs->wanted.without_collisions;
-    if (mcs->wanted.faster > 0) {
-        wh_layout_hasten(layout, mcs->wanted.faster - 1, mcs->wanted.faster_share);
-    }
-    if (layout->collision && mcs->wanted.counts == WH_MCS_COUNT_STRICT) {
-        return luaL_error(L,
-                          "%s: collision = true (--counted does not look for collisions in slices that it "
-                          "leaves out: expected a run without --strict, or without --counted)",
-                          path);
-    }
+    change_times(mcs, layout);
     set_up_run(L, mcs, layout);
     wh_mcs_begin_clocks(L, mcs);
     wh_mcs_begin_counting(L, mcs);

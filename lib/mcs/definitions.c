@@ -56,6 +56,8 @@ static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
 
 const wh_layout_class_t wh_flow_classes[] = {
     {"timed_layout", "A cell whose robots are times alone.", wh_layout_timed_fields},
+    {"timed_study", "The errors that trials of such a cell draw.", wh_layout_timed_study_fields},
+    {"timed_timing", "Widths of times in it.", wh_layout_timed_timing_fields},
     {"timed_robot", "A robot that is times alone.", wh_layout_timed_robot_fields},
     {"timed_station", "A station of such a cell.", wh_layout_timed_station_fields},
     {"timed_by", "How one of several robots comes to it.", wh_layout_timed_by_fields},

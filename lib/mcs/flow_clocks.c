@@ -8,6 +8,9 @@
 /* How much longer than described something may take in a station, us: as wait_for has it. */
 #define GRACE_US INT64_C(60000000)
 
+/* How often on_error may have a station waited for longer. */
+#define MOST_WAITS 100
+
 int64_t wh_flow_played_now(const wh_flow_played_t *played) {
     const wh_track_t *track = &played->mcs->track;
     return track->slice * track->slice_us - played->flow->began_us;
@@ -67,11 +70,26 @@ static void tell(const wh_flow_played_t *played, wh_flow_state_t *state, const w
 
 /* ----------------------------------------------------------------------------------------------- stalling */
 
-static void stall(wh_flow_state_t *state, const char *station, const char *what) {
-    char text[300];
-    (void)snprintf(text, sizeof text, "STATION_TIMEOUT: %s: %s takes 60 s longer than described", station,
-                   what);
-    state->cause = state->cause ? state->cause : wh_text_copy(text);
+/* The first one is told, unless on_error has said that the station is waited for. False if it is. */
+static bool is_told(const wh_flow_played_t *played, int32_t station) {
+    return played->stall.station == WH_FLOW_NONE &&
+           wh_flow_played_now(played) >= played->patience[station].until_us;
+}
+
+static void stall(wh_flow_played_t *played, int32_t station, const char *action, const char *what) {
+    if (is_told(played, station)) {
+        played->stall.station = station;
+        played->stall.action = action;
+        (void)snprintf(played->stall.text, sizeof played->stall.text,
+                       "STATION_TIMEOUT: %s: %s takes 60 s longer than described",
+                       played->tool->stations[station].name, what);
+    }
+}
+
+bool wh_flow_wait_on(wh_flow_played_t *played, int32_t station) {
+    wh_flow_patience_t *patience = &played->patience[station];
+    patience->until_us = wh_flow_played_now(played) + GRACE_US;
+    return ++patience->asked <= MOST_WAITS;
 }
 
 /* Something in the place lasts too long: a fault keeps it up. */
@@ -81,45 +99,53 @@ static bool is_stalled(const wh_flow_station_t *of, const wh_clock_place_t *plac
            (place->phase == WH_CLOCK_CLEANING && lasts_us > of->clean_us);
 }
 
-static void check_stall(const wh_flow_played_t *played, wh_flow_state_t *state, const wh_clocked_t *of,
-                        const wh_clock_t *clock) {
+static void check_stall(wh_flow_played_t *played, const wh_clocked_t *of, const wh_clock_t *clock) {
     const struct wh_clocks *clocks = played->mcs->clocks;
-    const char *name = played->tool->stations[of->station].name;
     const int64_t now_us = clocks->state->utime;
     for (int32_t slot = 0; slot < of->of.slots; ++slot) {
         const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
         if (is_stalled(&of->of, place, now_us)) {
-            stall(state, name, place->phase == WH_CLOCK_PROCESSING ? "a process" : "a clean");
+            const bool is_process = place->phase == WH_CLOCK_PROCESSING;
+            stall(played, of->station, is_process ? "process" : "clean",
+                  is_process ? "a process" : "a clean");
         }
     }
     if (clock->is_pumping &&
         now_us - clock->begun_us - GRACE_US > wh_flow_pump_us(&of->of, clock->pump_to, false)) {
-        stall(state, name, "pumping");
+        stall(played, of->station, "pump", "pumping");
     }
 }
 
-static void say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state, const wh_clocked_t *of) {
+static bool find_unbegun(wh_flow_played_t *played, const wh_flow_state_t *state, const wh_clocked_t *of) {
     const struct wh_clocks *clocks = played->mcs->clocks;
-    for (int32_t slot = 0; slot < of->of.slots && !state->cause && !of->is_down; ++slot) {
+    for (int32_t slot = 0; slot < of->of.slots && !of->is_down; ++slot) {
         const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
         const int32_t wafer = number_of(played, place->wafer);
-        char text[400], why[WH_CLOCKS_WHY_BYTES];
+        char why[WH_CLOCKS_WHY_BYTES];
         if (place->phase != WH_CLOCK_WAITING || wafer == WH_FLOW_NONE || state->wafers[wafer].is_over) {
             continue;
         }
-        const char *bad = wh_clocks_why_bad(clocks, of, slot, why);
-        (void)snprintf(text, sizeof text, "the process of %s in %s slot %d has not begun: %s",
-                       played->flow->plan.wafers[wafer].name, played->tool->stations[of->station].name,
-                       (int)slot + 1, bad ? bad : "a door of it is not shut");
-        state->cause = wh_text_copy(text);
+        if (is_told(played, of->station)) {
+            const char *bad = wh_clocks_why_bad(clocks, of, slot, why);
+            played->stall.station = of->station;
+            played->stall.action = "process";
+            (void)snprintf(played->stall.text, sizeof played->stall.text,
+                           "the process of %s in %s slot %d has not begun: %s",
+                           played->flow->plan.wafers[wafer].name, played->tool->stations[of->station].name,
+                           (int)slot + 1, bad ? bad : "a door of it is not shut");
+        }
+        return true;
     }
+    return false;
 }
 
-void wh_flow_say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state) {
+bool wh_flow_find_unbegun(wh_flow_played_t *played, const wh_flow_state_t *state) {
     const struct wh_clocks *clocks = played->mcs->clocks;
+    bool found = false;
     for (size_t i = 0; clocks && i < clocks->count; ++i) {
-        say_unbegun(played, state, &clocks->of[i]);
+        found = find_unbegun(played, state, &clocks->of[i]) || found;
     }
+    return found;
 }
 
 /* ------------------------------------------------------------------------------------------------ looking */
@@ -133,13 +159,13 @@ void wh_flow_hear(void *context, wh_flow_state_t *state) {
 }
 
 void wh_flow_look(void *context, wh_flow_state_t *state) {
-    const wh_flow_played_t *played = context;
+    wh_flow_played_t *played = context;
     const struct wh_clocks *clocks = played->mcs->clocks;
     for (size_t i = 0; clocks && i < clocks->count; ++i) {
         const wh_clocked_t *of = &clocks->of[i];
         wh_flow_see_station(state, of->station, &of->of, &clocks->clocks[i], &clocks->places[of->first],
                             played->flow->began_us);
-        check_stall(played, state, of, &clocks->clocks[i]);
+        check_stall(played, of, &clocks->clocks[i]);
     }
     wh_flow_look_at_ports(played, state);
 }

@@ -31,7 +31,9 @@ static void drop(wh_flow_played_t *played, bool has_result) {
     free(played->heard);
     wh_flow_timed_close(played);
     free(played->carriers);
+    free(played->patience);
     played->numbers = played->carriers = NULL;
+    played->patience = NULL;
     played->is_mapped = played->is_taken = NULL;
     played->heard = NULL;
 }
@@ -67,6 +69,8 @@ static void make_room(wh_flow_played_t *played) {
     played->is_mapped = wh_array_new(played->flow->plan.lot_count, sizeof *played->is_mapped);
     played->carriers = wh_array_new(played->flow->plan.call_count + 1, sizeof *played->carriers);
     played->is_taken = wh_array_new(played->tool->station_count, sizeof *played->is_taken);
+    played->patience = wh_array_new(played->tool->station_count, sizeof *played->patience);
+    played->stall.station = WH_FLOW_NONE;
 }
 
 /* Doors that are not shut are shut first: each of the flow's stations begins with shut ones. */
@@ -102,6 +106,10 @@ static void push_names(lua_State *L, const wh_flow_played_t *played) {
  * of the robots and of the stations, and its line. */
 static int begin_flow(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    if (mcs->wanted.until_steady) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                     "flow: --until-steady ends flows by times alone (expected robots that are times alone)");
+    }
     wh_flow_played_t *played = new_played(L, mcs);
     played->tool = wh_flow_tool_of_layout(L, mcs->layout);
     played->flow = wh_flow_read_word(L, mcs, played->tool);
@@ -143,9 +151,8 @@ static int step_flow(lua_State *L) {
     wh_flow_timed_wait(played);
     const int64_t next_us = wh_flow_engine_step(engine, now_us);
     wh_flow_timed_begin(played);
-    if (engine->is_over && engine->end == WH_FLOW_STUCK) {
-        wh_flow_say_unbegun(played, &engine->state);
-        engine->end = engine->state.cause ? WH_FLOW_BROKEN : WH_FLOW_STUCK;
+    if (engine->is_over && engine->end == WH_FLOW_STUCK && wh_flow_find_unbegun(played, &engine->state)) {
+        engine->is_over = false;
     }
     if (engine->is_over) {
         return 0;
@@ -154,6 +161,29 @@ static int step_flow(lua_State *L) {
     const int64_t us = next_us - now_us < LOOK_US ? next_us - now_us : LOOK_US;
     const int64_t slices = (us + slice_us - 1) / slice_us;
     lua_pushnumber(L, (double)(slices * slice_us) / 1e6);
+    return 1;
+}
+
+/* native.take_stall(): something in a station takes too long, or does not begin: its number and name,
+ * "process", "clean" or "pump", and a text; once. Nothing: all goes on. */
+static int take_stall(lua_State *L) {
+    wh_flow_played_t *played = played_of(L);
+    const int32_t station = played->stall.station;
+    played->stall.station = WH_FLOW_NONE;
+    if (station == WH_FLOW_NONE || played->engine->is_over) {
+        return 0;
+    }
+    lua_pushinteger(L, station + 1);
+    lua_pushstring(L, played->tool->stations[station].name);
+    lua_pushstring(L, played->stall.action);
+    lua_pushstring(L, played->stall.text);
+    return 4;
+}
+
+/* native.wait_on(station): it is waited for as long again. False if that was so too often. */
+static int wait_on(lua_State *L) {
+    wh_flow_played_t *played = played_of(L);
+    lua_pushboolean(L, wh_flow_wait_on(played, wh_mcs_index(L, 1, played->tool->station_count)));
     return 1;
 }
 
@@ -186,14 +216,24 @@ static void set_gripper(lua_State *L, const wh_flow_played_t *played, int32_t ro
     wh_lua_set_text(L, "gripper", played->mcs->layout->grippers[gripper].name);
 }
 
+/* The wafer goes to a full place: the robot's other arm is empty, and takes first. */
+static bool is_to_exchange(const wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const int32_t place = at->order.place;
+    const bool is_full = place != WH_FLOW_NONE && state->places[place].wafer != WH_FLOW_NONE &&
+                         state->places[place].leaving_us == WH_FLOW_NEVER;
+    return is_full && state->tool->robots[robot].arms > 1 &&
+           (at->arms[0] == WH_FLOW_NONE || at->arms[1] == WH_FLOW_NONE);
+}
+
 /* The arm for the order's wafer, which is aboard, or for one that is still to come. */
 static int32_t find_arm(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     const bool is_first = at->arms[0] == at->order.wafer;
-    if (at->order.what == WH_FLOW_BRING) {
+    if (at->order.what == WH_FLOW_BRING && !is_to_exchange(state, robot)) {
         return is_first ? 0 : 1;
     }
-    if (at->order.what == WH_FLOW_SWAP) {
+    if (at->order.what == WH_FLOW_BRING || at->order.what == WH_FLOW_SWAP) {
         return is_first ? 1 : 0; /* the empty one takes first */
     }
     return at->arms[0] != WH_FLOW_NONE && state->tool->robots[robot].arms > 1 ? 1 : 0;
@@ -406,6 +446,8 @@ static int end_flow(lua_State *L) {
 
 const luaL_Reg wh_mcs_flow_played_functions[] = {{"begin_flow", begin_flow},
                                                  {"step_flow", step_flow},
+                                                 {"take_stall", take_stall},
+                                                 {"wait_on", wait_on},
                                                  {"is_flow_due", is_flow_due},
                                                  {"fail_flow", fail_flow},
                                                  {"take_action", take_action},

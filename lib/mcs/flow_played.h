@@ -6,6 +6,9 @@
 #include "../flow/outside.h"
 #include "clocks.h"
 
+/* The bytes of the text of a stall. */
+#define WH_FLOW_STALL_BYTES 500
+
 /* An event of a station's clock that the engine has not heard yet. */
 typedef struct {
     int32_t station;
@@ -25,6 +28,19 @@ typedef struct {
     wh_pose_t slot_from_wafer; /* as it lay in the last slot, and will in the next one */
 } wh_flow_aboard_t;
 
+/* How long a station is waited for, because on_error has said so. */
+typedef struct {
+    int64_t until_us; /* of the flow */
+    int32_t asked;    /* how often it was waited for longer */
+} wh_flow_patience_t;
+
+/* Something in a station that takes too long, or does not begin. */
+typedef struct {
+    int32_t station;    /* WH_FLOW_NONE: nothing does */
+    const char *action; /* "process", "clean" or "pump" */
+    char text[WH_FLOW_STALL_BYTES];
+} wh_flow_stall_t;
+
 typedef struct wh_flow_played {
     wh_mcs_t *mcs;
     wh_flow_t *flow; /* the record's */
@@ -43,6 +59,8 @@ typedef struct wh_flow_played {
     wh_flow_carried_t *carried; /* what robots that are times alone have done, and nobody has noted yet */
     size_t carried_count, carried_capacity, noted_count;
     int32_t waited; /* slices in which the simulator had no room for a wafer's order */
+    wh_flow_stall_t stall;        /* that nobody has asked on_error of yet */
+    wh_flow_patience_t *patience; /* by station */
 } wh_flow_played_t;
 
 /* Lots' wafers get the names of those that lie in their slots. Raises what cannot be: a slot without a
@@ -76,8 +94,12 @@ void wh_flow_look(void *context, wh_flow_state_t *state);
 bool wh_flow_pump_lock(void *context, int32_t station, wh_flow_side_t side);
 void wh_flow_hold_station(void *context, int32_t station, bool is_down);
 
-/* Nobody can go on. If that is for a process that has not begun, the state's cause says why it has not. */
-void wh_flow_say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state);
+/* Nobody can go on. True if that is for a process that has not begun, and whose station is waited for: either
+ * on_error has said so, or it is to be asked of the stall, which says why it has not begun. */
+bool wh_flow_find_unbegun(wh_flow_played_t *played, const wh_flow_state_t *state);
+
+/* The station is waited for as long again. False if that was so too often. */
+bool wh_flow_wait_on(wh_flow_played_t *played, int32_t station);
 
 /* The next wafer that comes to this place is processed as its step has it. */
 void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t place);

@@ -177,7 +177,7 @@ static void fail(wh_record_t *record, const char *word, const char *why, const c
     fprintf(out, "every wafer at its end; %s%s%s%s", word, why ? why : "", error ? ": " : "",
             error ? error : "");
     (void)fclose(out);
-    wh_record_add_expectation(record, record->flow->line, text, false);
+    wh_record_add_implied(record, record->flow->line, text, false);
     free(text);
 }
 
@@ -213,6 +213,8 @@ static void judge_flow(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) 
     char text[600];
     if (figures->result.end == WH_FLOW_STUCK || figures->result.end == WH_FLOW_BROKEN) {
         judge_end(record, flow, error);
+    } else if (figures->result.end == WH_FLOW_DONE && figures->result.lost == 0) {
+        wh_record_count_implied(record, flow->line, "every wafer at its end", true);
     }
     for (size_t i = 0; i < figures->stays.late_count && !flow->is_lateness_told; ++i) {
         const wh_flow_stay_t *stay = &figures->stays.late[i];

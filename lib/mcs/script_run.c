@@ -40,6 +40,17 @@ static bool is_layout(lua_State *L) {
     return false;
 }
 
+/* The fault of a script that set up its cell: it has not done what an option asks for, or did not read a
+ * parameter. */
+static bool find_undone(const wh_script_run_t *run, const wh_script_run_options_t *options,
+                        char text[WH_SANDBOX_MESSAGE_BYTES]) {
+    if (options->until_steady && !run->record.flow) {
+        (void)snprintf(text, WH_SANDBOX_MESSAGE_BYTES, "no flow (expected one for --until-steady)");
+        return true;
+    }
+    return !options->unread_parameters && wh_sandbox_find_unread(run->sandbox, text);
+}
+
 /* Finds the fault of a script that ended without error: it set up no cell, or did not read a parameter. Its
  * result is on top of the stack. False if there is no fault. */
 static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *options,
@@ -56,8 +67,7 @@ static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *opti
         (void)snprintf(text, sizeof text,
                        "no script: it returns a table and sets up no cell (expected cell \"LAYOUT.lua\"; "
                        "scripts have the use of modules by require)");
-    } else if (run->mcs.layout &&
-               (options->unread_parameters || !wh_sandbox_find_unread(run->sandbox, text))) {
+    } else if (run->mcs.layout && !find_undone(run, options, text)) {
         return false;
     }
     (void)snprintf(whole, sizeof whole, "%s: %s", script, text);
@@ -135,9 +145,11 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->record.trial = options->error_count > 0 ? NULL : options->trial;
     run->mcs.wanted.without_collisions = options->without_collisions;
     run->mcs.wanted.until_steady = options->until_steady;
+    run->mcs.wanted.needs_axes = options->needs_axes;
     run->mcs.wanted.counts = options->counts;
     run->mcs.wanted.verify = options->verify;
     run->mcs.wanted.faster = options->faster;
+    run->mcs.wanted.faster_count = options->faster_count;
     run->mcs.wanted.faster_share = options->faster_share;
     run->mcs.wanted.decisions = options->decisions;
     run->mcs.wanted.listener = options->listener;

@@ -22,11 +22,13 @@ typedef struct {
     /* The cell's errors by name, for wh_layout_give_errors: with these it draws none. */
     const char *const *errors;
     size_t error_count;
-    bool without_collisions;   /* no collision check, whatever the layout says */
-    bool until_steady;         /* a flow by times alone ends as soon as it is steady */
-    wh_mcs_count_t counts;     /* whether slices are left out */
-    uint64_t verify;           /* stretches of them that are played all the same */
-    size_t faster;             /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */
+    bool without_collisions; /* no collision check, whatever the layout says */
+    bool until_steady;       /* a flow by times alone ends as soon as it is steady: it must have one */
+    const char *needs_axes;  /* the option for which robots must have axes; null: none was given */
+    wh_mcs_count_t counts;   /* whether slices are left out */
+    uint64_t verify;         /* stretches of them that are played all the same */
+    const size_t *faster;    /* the numbers of what takes less time, see wh_layout_hasten */
+    size_t faster_count;
     double faster_share;       /* and by how much */
     wh_decisions_t *decisions; /* all zero at first: keeps commands and readings; null: they are not kept */
 } wh_script_run_options_t;

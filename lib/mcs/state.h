@@ -198,9 +198,11 @@ typedef struct {
     wh_flow_keep_t keeps;    /* of a flow beside its sums */
     bool without_collisions; /* no collision check, whatever the layout says */
     bool until_steady;       /* a flow by times alone ends as soon as it is steady */
+    const char *needs_axes;  /* the option for which robots must have axes; null: none was given */
     wh_mcs_count_t counts;
-    uint64_t verify; /* so many stretches of slices that could be left out are played, see verify.h */
-    size_t faster;   /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */
+    uint64_t verify;      /* so many stretches of slices that could be left out are played, see verify.h */
+    const size_t *faster; /* the numbers of what takes less time, see wh_layout_hasten */
+    size_t faster_count;
     double faster_share;
     bool limits_missed; /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;

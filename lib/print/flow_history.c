@@ -1,6 +1,7 @@
 #include "flow_history.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "../text/array.h"
 #include "../text/json.h"
@@ -15,10 +16,20 @@ typedef struct {
     const char *location, *processing, *ept;
 } line_t;
 
+/* Something of a module begins or ends: a process or a clean keeps it busy; a done wafer, or a failure of its
+ * station, blocks it. */
+typedef struct {
+    int64_t us;
+    int32_t place;
+    int busy, blocked; /* 1: begins; -1: ends */
+} mark_t;
+
 typedef struct {
     const wh_flow_figures_t *figures;
     line_t *lines;
     size_t count, capacity;
+    mark_t *marks;
+    size_t mark_count, mark_capacity;
 } lines_t;
 
 static void add_line(lines_t *lines, const line_t *line) {
@@ -72,25 +83,6 @@ static void add_visit(lines_t *lines, const wh_flow_visit_t *visit, const char *
     add_line(lines, &line);
 }
 
-/* A process's begin and end, and the pick that follows it. */
-static void add_module(lines_t *lines, const wh_flow_visit_t *visit, int64_t taken_us) {
-    line_t line = {
-        .us = visit->process_us, .wafer = WH_FLOW_NONE, .place = visit->place, .robot = WH_FLOW_NONE};
-    if (visit->process_us == WH_FLOW_NEVER || visit->done_us <= visit->process_us) {
-        return;
-    }
-    line.ept = "BUSY";
-    add_line(lines, &line);
-    if (taken_us > visit->done_us) {
-        line.us = visit->done_us;
-        line.ept = "BLOCKED";
-        add_line(lines, &line);
-    }
-    line.us = taken_us;
-    line.ept = "IDLE";
-    add_line(lines, &line);
-}
-
 static int by_time(const void *a, const void *b) {
     const line_t *one = a, *other = b;
     if (one->us != other->us) {
@@ -99,11 +91,147 @@ static int by_time(const void *a, const void *b) {
     return one->number < other->number ? -1 : 1;
 }
 
+/* ------------------------------------------------------------------------------------------------ modules */
+
+static void add_mark(lines_t *lines, const mark_t *mark) {
+    if (mark->us < WH_FLOW_FOR_EVER) {
+        lines->marks =
+            wh_array_grow(lines->marks, lines->mark_count, &lines->mark_capacity, sizeof *lines->marks);
+        lines->marks[lines->mark_count++] = *mark;
+    }
+}
+
+static void add_span(lines_t *lines, int32_t place, int64_t begin_us, int64_t end_us, bool is_busy) {
+    const int busy = is_busy ? 1 : 0;
+    add_mark(lines, &(mark_t){begin_us, place, busy, 1 - busy});
+    add_mark(lines, &(mark_t){end_us, place, -busy, busy - 1});
+}
+
+/* A process, and the stay behind it until the pick begins. */
+static void mark_visit(lines_t *lines, const wh_flow_visit_t *visit, int64_t taken_us) {
+    if (visit->process_us == WH_FLOW_NEVER || visit->done_us <= visit->process_us) {
+        return;
+    }
+    add_span(lines, visit->place, visit->process_us, visit->done_us, true);
+    if (taken_us > visit->done_us) {
+        add_span(lines, visit->place, visit->done_us, taken_us, false);
+    }
+}
+
+static void mark_visits(lines_t *lines) {
+    const wh_flow_figures_t *figures = lines->figures;
+    const size_t wafers = figures->plan->wafer_count;
+    int64_t *taken_us = wh_array_new(wafers + 1, sizeof *taken_us);
+    for (size_t w = 0; w < wafers; ++w) {
+        taken_us[w] = WH_FLOW_NEVER;
+    }
+    for (size_t i = figures->visit_count; i > 0; --i) {
+        const wh_flow_visit_t *visit = &figures->visits[i - 1];
+        mark_visit(lines, visit, taken_us[visit->wafer]);
+        taken_us[visit->wafer] = visit->pick_us;
+    }
+    free(taken_us);
+}
+
+static void mark_down(lines_t *lines, const bool modules[], int32_t station, int64_t begin_us,
+                      int64_t end_us) {
+    const wh_flow_station_t *of = &lines->figures->tool->stations[station];
+    for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
+        if (modules[place]) {
+            add_span(lines, place, begin_us, end_us, false);
+        }
+    }
+}
+
+/* Failures that have ended are told; others are the plan's. */
+static void mark_downs(lines_t *lines) {
+    const wh_flow_figures_t *figures = lines->figures;
+    const wh_flow_plan_t *plan = figures->plan;
+    bool *modules = wh_array_new(figures->tool->place_count, sizeof *modules);
+    for (size_t i = 0; i < lines->mark_count; ++i) {
+        modules[lines->marks[i].place] = true;
+    }
+    for (size_t i = 0; i < figures->doing_count; ++i) {
+        const wh_flow_doing_t *doing = &figures->doings[i];
+        if (doing->kind == WH_FLOW_EVENT_DOWN) {
+            mark_down(lines, modules, doing->station, doing->begin_us, doing->end_us);
+        }
+    }
+    for (size_t i = 0; i < plan->down_count; ++i) {
+        const wh_flow_down_t *down = &plan->downs[i];
+        if (down->at_us <= figures->end_us && down->for_us > figures->end_us - down->at_us) {
+            mark_down(lines, modules, down->station, down->at_us, WH_FLOW_NEVER);
+        }
+    }
+    free(modules);
+}
+
+static int by_place(const void *a, const void *b) {
+    const mark_t *one = a, *other = b;
+    if (one->place != other->place) {
+        return one->place < other->place ? -1 : 1;
+    }
+    return (one->us > other->us) - (one->us < other->us);
+}
+
+/* True if no other mark of this module is of this time. */
+static bool is_last_mark(const lines_t *lines, size_t i) {
+    const mark_t *mark = &lines->marks[i];
+    return i + 1 == lines->mark_count || mark[1].place != mark->place || mark[1].us != mark->us;
+}
+
+/* Lines where a module's state becomes another one. */
+static void tell_modules(lines_t *lines) {
+    int busy = 0, blocked = 0;
+    const char *state = NULL;
+    if (lines->mark_count > 0) {
+        qsort(lines->marks, lines->mark_count, sizeof *lines->marks, by_place);
+    }
+    for (size_t i = 0; i < lines->mark_count; ++i) {
+        const mark_t *mark = &lines->marks[i];
+        if (i == 0 || mark[-1].place != mark->place) {
+            busy = blocked = 0;
+            state = "IDLE";
+        }
+        busy += mark->busy;
+        blocked += mark->blocked;
+        const char *now = busy > 0 ? "BUSY" : blocked > 0 ? "BLOCKED" : "IDLE";
+        if (is_last_mark(lines, i) && strcmp(now, state) != 0) {
+            const line_t line = {.us = mark->us,
+                                 .wafer = WH_FLOW_NONE,
+                                 .place = mark->place,
+                                 .robot = WH_FLOW_NONE,
+                                 .ept = now};
+            add_line(lines, &line);
+            state = now;
+        }
+    }
+}
+
+static void add_modules(lines_t *lines) {
+    const wh_flow_figures_t *figures = lines->figures;
+    mark_visits(lines);
+    for (size_t i = 0; i < figures->doing_count; ++i) {
+        const wh_flow_doing_t *doing = &figures->doings[i];
+        if (doing->kind == WH_FLOW_EVENT_CLEAN) {
+            add_span(lines, doing->place, doing->begin_us, doing->end_us, true);
+        }
+    }
+    for (size_t i = 0; i < figures->running.count; ++i) {
+        add_span(lines, figures->running.items[i].place, figures->running.items[i].begin_us, WH_FLOW_NEVER,
+                 true);
+    }
+    mark_downs(lines);
+    tell_modules(lines);
+    free(lines->marks);
+}
+
+/* -------------------------------------------------------------------------------------------------- whole */
+
 static void find_lines(lines_t *lines) {
     const wh_flow_figures_t *figures = lines->figures;
     const wh_flow_plan_t *plan = figures->plan;
     const char **processing = wh_array_new(plan->wafer_count + 1, sizeof *processing);
-    int64_t *taken_us = wh_array_new(plan->wafer_count + 1, sizeof *taken_us);
     for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
         const line_t line = {.us = figures->came_us[w],
                              .wafer = w,
@@ -112,19 +240,25 @@ static void find_lines(lines_t *lines) {
                              .location = "AtSource",
                              .processing = "NeedsProcessing"};
         processing[w] = line.processing;
-        taken_us[w] = WH_FLOW_NEVER;
         add_line(lines, &line);
     }
     for (size_t i = 0; i < figures->visit_count; ++i) {
         add_visit(lines, &figures->visits[i], processing);
     }
-    for (size_t i = figures->visit_count; i > 0; --i) {
-        const wh_flow_visit_t *visit = &figures->visits[i - 1];
-        add_module(lines, visit, taken_us[visit->wafer]);
-        taken_us[visit->wafer] = visit->pick_us;
+    for (size_t i = 0; i < figures->running.count; ++i) {
+        const wh_flow_running_t *running = &figures->running.items[i];
+        const line_t line = {.us = running->begin_us,
+                             .wafer = running->wafer,
+                             .place = running->place,
+                             .robot = WH_FLOW_NONE,
+                             .location = "AtWork",
+                             .processing = "InProcess"};
+        if (running->wafer != WH_FLOW_NONE) {
+            add_line(lines, &line);
+        }
     }
     free(processing);
-    free(taken_us);
+    add_modules(lines);
     if (lines->count > 0) {
         qsort(lines->lines, lines->count, sizeof *lines->lines, by_time);
     }

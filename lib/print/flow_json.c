@@ -2,8 +2,9 @@
  * the makespan, the cut, or when nobody went on), wafers, cycle_s, period, per_hour, no_cycle (why there is
  * none), textbook (its cycle beside that, or why none), busiest (who has the least time to spare), may_block
  * (safe is not held), longest_stay_s, path (parts of the critical path, which add up to the makespan, the
- * longest first), gains (what the flow takes if one robot or station takes 10 % less time), waits (robots'
- * by cause, done wafers' by who kept them), windows (by station), gaps (the smallest ones of all), robots
+ * longest first), gains (what the flow takes if one robot or station takes 10 % less time, and how many stays
+ * are beyond windows then: late), waits (robots' by cause, done wafers' by who kept them), windows (by
+ * station), gaps (the smallest ones of all), robots
  * and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays (beyond their
  * windows), lots (with their wafers), visits (each wafer's, by the end of placing; at last those under way,
  * with null for what has not come), doings (pumps, vents, cleans and failures of stations, by their ends),
@@ -184,7 +185,7 @@ static json_t *part(const void *subject, size_t i) {
 
 static json_t *way(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
-    const wh_flow_way_t *of = &figures->ways[i];
+    const wh_flow_way_t *of = &figures->ways.items[i];
     return wh_json_set(json_object(), "robot %s from %s to %s begin_s %g end_s %g",
                        figures->tool->robots[of->robot].name, figures->tool->stations[of->from].name,
                        figures->tool->stations[of->to].name, (double)of->begin_us / 1e6,
@@ -234,9 +235,9 @@ static json_t *gain(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
     const wh_flow_gain_t *of = &figures->gains[i];
     const double cycle_s = of->cycle_us > 0 ? of->cycle_us / 1e6 : (double)NAN;
-    return wh_json_set(json_object(), "of %s end %s makespan_s %g cycle_s %g",
+    return wh_json_set(json_object(), "of %s end %s makespan_s %g cycle_s %g late %lld",
                        name_of(figures->tool, of->robot, of->station), ends[of->end],
-                       (double)of->makespan_us / 1e6, cycle_s);
+                       (double)of->makespan_us / 1e6, cycle_s, (long long)of->late);
 }
 
 json_t *wh_flow_to_json(const wh_flow_t *flow) {
@@ -268,8 +269,8 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
                       wh_json_list(lot, figures, figures->plan->lot_count),
                       wh_json_list(visit, figures, figures->visit_count),
                       wh_json_list(doing, figures, figures->doing_count), NULL);
-    if (figures->ways) {
-        wh_json_put(object, "ways", wh_json_list(way, figures, figures->way_count));
+    if (figures->ways.items) {
+        wh_json_put(object, "ways", wh_json_list(way, figures, figures->ways.count));
     }
     return object;
 }

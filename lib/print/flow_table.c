@@ -174,16 +174,33 @@ static void print_path(const wh_printer_t *printer, const wh_flow_figures_t *fig
     }
 }
 
+/* True if with some gain wafers stay beyond their windows. */
+static bool has_late_gain(const wh_flow_figures_t *figures, size_t count) {
+    bool has = false;
+    for (size_t i = 0; i < count; ++i) {
+        has = has || figures->gains[i].late > 0;
+    }
+    return has;
+}
+
+static bool changes_something(const wh_flow_gain_t *gain, const wh_flow_result_t *result) {
+    const double cycle_us = result->period > 0 ? (double)result->cycle_us / result->period : -1;
+    return gain->end == result->end &&
+           (gain->makespan_us != result->makespan_us || fabs(gain->cycle_us - cycle_us) >= 1);
+}
+
 /* Those alone that change something. */
 static void print_gains(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     const wh_flow_tool_t *tool = figures->tool;
     const wh_flow_result_t *result = &figures->result;
+    const size_t count = figures->gains ? tool->robot_count + tool->station_count : 0;
     wh_grid_t *grid = wh_grid_new(printer->style, 1, "10 % less of;makespan s{3,6};less s{3,6};cycle s{3,6}");
-    for (size_t i = 0; figures->gains && i < tool->robot_count + tool->station_count; ++i) {
+    if (has_late_gain(figures, count)) {
+        wh_grid_columns(grid, "too long{0}");
+    }
+    for (size_t i = 0; i < count; ++i) {
         const wh_flow_gain_t *gain = &figures->gains[i];
-        const double cycle_us = result->period > 0 ? (double)result->cycle_us / result->period : -1;
-        if (gain->end != result->end ||
-            (gain->makespan_us == result->makespan_us && fabs(gain->cycle_us - cycle_us) < 1)) {
+        if (!changes_something(gain, result)) {
             continue;
         }
         const double values[] = {seconds(gain->makespan_us), seconds(result->makespan_us - gain->makespan_us),
@@ -192,6 +209,9 @@ static void print_gains(const wh_printer_t *printer, const wh_flow_figures_t *fi
         wh_grid_numbers(grid, 1, values, gain->cycle_us > 0 ? 3 : 2);
         if (gain->cycle_us <= 0) {
             wh_grid_text(grid, 3, WH_INK_DIM, "none");
+        }
+        if (gain->late > 0) {
+            wh_grid_number(grid, 4, WH_INK_BAD, (double)gain->late);
         }
     }
     wh_print_titled(printer, "Gains", grid);

@@ -6,7 +6,14 @@
 
 /* -------------------------------------------------------------------------------------------------- table */
 
-static void add_row(wh_grid_t *grid, const char *name, const wh_sweep_point_t *point, double gain) {
+/* Behind the gain: stays beyond windows, and wafers lost, where any run has them. */
+typedef struct {
+    bool late, lost;
+} shown_t;
+
+static void add_row(wh_grid_t *grid, const char *name, const wh_sweep_point_t *point, double gain,
+                    const shown_t *shown) {
+    size_t column = 5;
     wh_grid_row(grid);
     wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
     wh_grid_text(grid, 1, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
@@ -20,9 +27,26 @@ static void add_row(wh_grid_t *grid, const char *name, const wh_sweep_point_t *p
     if (isfinite(gain)) {
         wh_grid_number(grid, 4, WH_INK_PLAIN, 100 * gain);
     }
-    if (point->reason) {
-        wh_grid_text(grid, 5, WH_INK_PLAIN, "%s", point->reason);
+    if (point->late > 0) {
+        wh_grid_number(grid, column, WH_INK_BAD, (double)point->late);
     }
+    column += shown->late ? 1 : 0;
+    if (point->lost > 0) {
+        wh_grid_number(grid, column, WH_INK_BAD, (double)point->lost);
+    }
+    column += shown->lost ? 1 : 0;
+    if (point->reason) {
+        wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->reason);
+    }
+}
+
+static shown_t find_shown(const wh_paces_t *paces) {
+    shown_t shown = {paces->base.late > 0, paces->base.lost > 0};
+    for (size_t i = 0; i < paces->count; ++i) {
+        shown.late = shown.late || paces->paces[i].point.late > 0;
+        shown.lost = shown.lost || paces->paces[i].point.lost > 0;
+    }
+    return shown;
 }
 
 static size_t count_ok(const wh_paces_t *paces) {
@@ -44,12 +68,17 @@ static void print_unlooked(const wh_paces_t *paces, FILE *out) {
 
 int wh_paces_print_table(const wh_paces_t *paces, FILE *out, const wh_style_t *style) {
     const size_t ok = count_ok(paces);
+    const shown_t shown = find_shown(paces);
     wh_grid_t *grid = wh_grid_new(style, 1, NULL);
-    wh_grid_columns(grid, "faster;result;simulated s{3};wafers/h{1};gain %{2};why");
-    add_row(grid, "(nothing)", &paces->base, HUGE_VAL);
+    wh_grid_columns(grid, "faster;result;simulated s{3};wafers/h{1};gain %{2}");
+    wh_grid_columns(grid, shown.late && shown.lost ? "too long{0};lost{0};why"
+                          : shown.late             ? "too long{0};why"
+                          : shown.lost             ? "lost{0};why"
+                                                   : "why");
+    add_row(grid, "(nothing)", &paces->base, HUGE_VAL, &shown);
     for (size_t i = 0; i < paces->count; ++i) {
         if (paces->paces[i].point.verdict != WH_SWEEP_UNDONE) {
-            add_row(grid, paces->paces[i].name, &paces->paces[i].point, paces->paces[i].gain);
+            add_row(grid, paces->paces[i].name, &paces->paces[i].point, paces->paces[i].gain, &shown);
         }
     }
     wh_style_put(out, paces->run.script);

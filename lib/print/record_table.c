@@ -209,6 +209,9 @@ static void print_counted(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     const wh_counted_record_t *counted = &record->counted;
     char count[WH_PRINT_NUMBER_SIZE];
+    if (counted->is_wanted && wh_record_is_timed(record)) {
+        fputs("played by events: there were no slices that --counted could leave out\n", printer->out);
+    }
     if (!counted->is_wanted || wh_record_is_timed(record)) {
         return;
     }

@@ -61,7 +61,8 @@ static json_t *play_of(const wh_schedule_t *schedule, const wh_schedule_play_t *
         "end %s why %s makespan_s %g schedule_makespan_s %g actions %lld played %lld differing %lld",
         ends[result->end], result->why, seconds(result->makespan_us), seconds(play->makespan_us),
         (long long)play->actions, (long long)play->played, (long long)play->differing);
-    (void)wh_json_set(object, "left_out %lld", (long long)play->resting);
+    (void)wh_json_set(object, "left_out %lld late %lld", (long long)play->resting,
+                      (long long)play->figures.stays.late_count);
     return wh_json_add(object, "first widest", apart_of(schedule, play->first_row, play->first_us),
                        apart_of(schedule, play->widest_row, play->widest_us), NULL);
 }

@@ -179,6 +179,10 @@ static void put_play(FILE *out, const wh_style_t *style, const wh_schedule_repor
         put_apart(out, report->schedule, "the first", play->first_row, play->first_us);
         put_apart(out, report->schedule, "the most apart", play->widest_row, play->widest_us);
     }
+    if (play->figures.stays.late_count > 0) {
+        wh_style_print(style, out, WH_INK_BAD, "  %zu %s beyond their windows as played\n",
+                       play->figures.stays.late_count, many(play->figures.stays.late_count, "stay", "stays"));
+    }
     if (play->resting > 0) {
         fprintf(out, "  ! %zu %s never carried: left out\n", play->resting,
                 many(play->resting, "wafer is", "wafers are"));

@@ -10,9 +10,15 @@ static double strength_of(const wh_correlation_t *found) {
     return found->determined ? fabs(found->r) : -1;
 }
 
+/* The wafers that draws are related with; a flow is not among them. */
+static size_t count_wafers(const wh_tally_t *tally) {
+    const size_t all = tally->relations.wafer_count;
+    return tally->flow_at < all ? tally->flow_at : all;
+}
+
 static void find_end(const wh_study_result_t *result, wh_cause_told_t *told) {
     const wh_tally_t *tally = result->tally;
-    for (size_t w = 0; w < tally->relations.wafer_count; ++w) {
+    for (size_t w = 0; w < count_wafers(tally); ++w) {
         for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
             const wh_correlation_t end =
                 wh_relations_end(&tally->relations, told->index, w, q, &tally->wafers[w].of[q]);
@@ -21,6 +27,14 @@ static void find_end(const wh_study_result_t *result, wh_cause_told_t *told) {
                 told->wafer = w;
                 told->quantity = q;
             }
+        }
+    }
+    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+        const wh_correlation_t end = wh_tally_relate(tally, told->index, (wh_flow_sum_t)f);
+        if (strength_of(&end) > strength_of(&told->end)) {
+            told->end = end;
+            told->is_flow = true;
+            told->quantity = f;
         }
     }
 }
@@ -102,6 +116,15 @@ static json_t *end(const void *subject, size_t w) {
     return object;
 }
 
+static json_t *flow_ends(const wh_tally_t *tally, size_t cause) {
+    json_t *object = json_object();
+    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+        const wh_correlation_t found = wh_tally_relate(tally, cause, (wh_flow_sum_t)f);
+        wh_json_put(object, wh_flow_sum_names[f], correlation(&found));
+    }
+    return object;
+}
+
 static json_t *drawn(const void *subject, size_t i) {
     const subject_t *of = subject;
     const wh_cause_told_t *told = &of->told[i];
@@ -118,8 +141,12 @@ static json_t *drawn(const void *subject, size_t i) {
     }
     json_t *failing = wh_json_add(json_object(), "by_size by_value", correlation(&told->by_size),
                                   correlation(&told->by_value), NULL);
-    return wh_json_add(object, "failing ends", failing,
-                       wh_json_list(end, &one, of->result->tally->relations.wafer_count), NULL);
+    (void)wh_json_add(object, "failing ends", failing,
+                      wh_json_list(end, &one, count_wafers(of->result->tally)), NULL);
+    if (of->result->tally->flow) {
+        wh_json_put(object, "flow", flow_ends(of->result->tally, told->index));
+    }
+    return object;
 }
 
 json_t *wh_causes_to_json(const wh_study_result_t *result) {

@@ -12,8 +12,9 @@ typedef struct {
     size_t index;              /* among the study's causes */
     wh_correlation_t by_size;  /* of failing with the size of the draw */
     wh_correlation_t by_value; /* with the value; not determined for delays, which have one direction */
-    wh_correlation_t end;      /* the strongest of those with the ends of wafers */
+    wh_correlation_t end;      /* the strongest of those with the ends of wafers, and a flow's figures */
     size_t wafer, quantity;    /* to which it belongs, when it is determined */
+    bool is_flow;              /* it is of the flow, and `quantity` a wh_flow_sum_t */
 } wh_cause_told_t;
 
 /* All of them, to be freed. The one that correlates with failing most strongly comes first; then those whose

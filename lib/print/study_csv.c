@@ -10,6 +10,9 @@ static void put_head(const wh_study_t *study, FILE *out) {
     static const char *const ends[WH_TRIAL_LINE_ENDS] = {"dX mm", "dY mm", "dz mm", "tilt deg"};
     char name[2 * WH_CAUSE_NAME];
     fputs("trial,ok,whole,ended,missed,errors,complaints,elsewhere,off mm", out);
+    for (size_t f = 0; study->has_flow && f < WH_FLOW_SUM_FIGURES; ++f) {
+        fprintf(out, ",%s", wh_flow_sum_names[f]);
+    }
     for (size_t w = 0; w < study->wafer_count; ++w) {
         for (size_t e = 0; e < WH_TRIAL_LINE_ENDS; ++e) {
             (void)snprintf(name, sizeof name, "%.200s %s", study->layout->wafers[study->wafers[w].wafer].name,
@@ -47,6 +50,7 @@ int wh_study_print_csv(const wh_study_result_t *result, FILE *out) {
         fprintf(out, "%llu,%d,%d,%d,%u,%u,%u,%u", (unsigned long long)line->trial, line->met, line->whole,
                 line->ended, line->missed, line->errors, line->complaints, line->elsewhere);
         put_numbers(&line->off, 1, out);
+        put_numbers(line->flow, study->has_flow ? WH_FLOW_SUM_FIGURES : 0, out);
         put_numbers(&lines->ends[i * width], width, out);
         wh_causes_draw(study->drawn, study->drawn_count, study->layout, &trial, drawn);
         put_numbers(drawn, study->drawn_count, out);

@@ -93,6 +93,39 @@ static json_t *wafer(const void *subject, size_t i) {
     return object;
 }
 
+/* --------------------------------------------------------------------------------------------------- flow */
+
+static json_t *figure(const wh_study_result_t *result, wh_flow_sum_t which) {
+    static const struct {
+        const char *key;
+        uint32_t permille;
+    } quantiles[] = {{"p0_1", 1},  {"p1", 10},   {"p5", 50},    {"p50", 500},
+                     {"p95", 950}, {"p99", 990}, {"p99_9", 999}};
+    const wh_flow_sums_t *flow = result->tally->flow;
+    const double *without = result->study->flow;
+    const wh_flow_spread_t spread = wh_flow_sums_spread(flow, which, without);
+    json_t *object =
+        wh_json_set(json_object(), "without_errors %g count %lld mean %g deviation %g min %g", without[which],
+                    (json_int_t)flow->of[which].count, spread.mean, spread.deviation, spread.least);
+    for (size_t i = 0; i < sizeof quantiles / sizeof quantiles[0]; ++i) {
+        const double value = wh_flow_sums_quantile(flow, which, without, quantiles[i].permille);
+        wh_json_put(object, quantiles[i].key, wh_json_real(fmax(spread.least, fmin(spread.most, value))));
+    }
+    return wh_json_set(object, "max %g", spread.most);
+}
+
+static json_t *flow(const wh_study_result_t *result) {
+    const wh_flow_sums_t *flow = result->tally->flow;
+    json_t *object =
+        wh_json_set(json_object(), "unfinished %lld unsteady %lld no_cycle %lld",
+                    (json_int_t)flow->unfinished, (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle);
+    for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        wh_json_put(object, wh_flow_sum_names[i],
+                    flow->of[i].count > 0 ? figure(result, (wh_flow_sum_t)i) : json_null());
+    }
+    return object;
+}
+
 /* -------------------------------------------------------------------------------------------------- worst */
 
 /* The draws of a trial; null for things without a draw. */
@@ -165,6 +198,20 @@ static json_t *drawn_beam(const void *subject, size_t b) {
                        drawn[WH_BEAM_DX], drawn[WH_BEAM_DY], drawn[WH_BEAM_LATE]);
 }
 
+/* The stations whose processes are drawn. */
+static json_t *drawn_processes(const wh_study_t *study, const wh_trial_t *trial) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < study->drawn_count; ++i) {
+        const wh_cause_t *cause = &study->drawn[i];
+        if (cause->kind == WH_CAUSE_PROCESS) {
+            wh_json_append(
+                list, wh_json_set(json_object(), "name %s process_s %g", wh_cause_of(cause, study->layout),
+                                  wh_errors_draw_process(study->layout->errors, trial, cause->index)));
+        }
+    }
+    return list;
+}
+
 static json_t *worst_trial(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_trial_t *worst = &result->tally->worst[i];
@@ -182,9 +229,15 @@ static json_t *worst_trial(const void *subject, size_t i) {
     if (layout->errors->debounce.width > 0) {
         wh_json_put(drawn, "debounce_s", wh_json_real(wh_errors_draw_debounce(layout->errors, &draw.trial)));
     }
-    return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g why %s", (json_int_t)worst->trial,
-                                   worst->met, worst->off, why[0] ? why : NULL),
-                       "drawn", drawn, NULL);
+    if (layout->errors->process.width > 0) {
+        wh_json_put(drawn, "processes", drawn_processes(result->study, &draw.trial));
+    }
+    json_t *object = wh_json_set(json_object(), "trial %lld ok %i off %g why %s", (json_int_t)worst->trial,
+                                 worst->met, worst->off, why[0] ? why : NULL);
+    for (size_t f = 0; result->study->has_flow && f < WH_FLOW_SUM_FIGURES; ++f) {
+        wh_json_put(object, wh_flow_sum_names[f], wh_json_real(worst->flow[f]));
+    }
+    return wh_json_add(object, "drawn", drawn, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
@@ -226,6 +279,9 @@ json_t *wh_study_to_json(const wh_study_result_t *result) {
     wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
     wh_json_put(root, "events", wh_json_list(event, result, WH_EVENT_KINDS));
     wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
+    if (result->tally->flow) {
+        wh_json_put(root, "flow", flow(result));
+    }
     wh_json_put(root, "drawn", wh_causes_to_json(result));
     wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
     return root;

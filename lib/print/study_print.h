@@ -21,21 +21,28 @@
  *                 elsewhere (trials that leave it anywhere else; the figures are of the others), count, and
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
+ *   flow:         of a script with a flow: unfinished (trials whose flow did not come to its end with all
+ *                 wafers: without a makespan), unsteady (whose cycle is the mean over the middle third of the
+ *                 wafers), no_cycle (with fewer than nine wafers: without one), and makespan_s,
+ *                 cycle_s, per_hour (null: no trial has it): { without_errors, count, mean, deviation, min,
+ *                 p0_1, ..., max }
  *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with
  *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam,
  *                 process), of (a name;
  *                 null: of all), what, unit, width,
- *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }.
+ *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off },
+ *                 flow: of a script with one { makespan_s, cycle_s, per_hour }.
  *                 Each is { r, low, high }, a correlation with its interval (study/relations.h), or null: not
  *                 determined
  *   worst:        trial, ok, off (of the wafer farthest off; null: one is
- *                 elsewhere), why (it failed, in words; null: it is ok), drawn: { wafers,
- *                 stations, rims, beams, valves, vacuum_s } what the trial drew: of each wafer { name, dx,
- *                 dy, dz, tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
- *                 degrees), of each rim { name, diameter, ... } (layout/rim_errors.h: mm, degrees), of each
- *                 beam { name, dx, dy, late_s }, of each valve { gripper, slices }, which act so late; only
- *                 of what is drawn.
- *                 Failed trials come first, then the farther off.
+ *                 elsewhere), why (it failed, in words; null: it is ok), of a script with a flow its
+ *                 makespan_s, cycle_s, per_hour, drawn: { wafers,
+ *                 stations, rims, beams, valves, vacuum_s, processes (name, process_s) } what the trial
+ *                 drew: of each wafer { name, dx, dy, dz, tilt_x, tilt_y, turn }, of each station { name,
+ *                 x, y, z, roll, pitch, yaw } (mm, degrees), of each rim { name, diameter, ... }
+ *                 (layout/rim_errors.h: mm, degrees), of each beam { name, dx, dy, late_s }, of each valve
+ *                 { gripper, slices }, which act so late; only of what is drawn.
+ *                 Failed trials come first, then the farther off, then the longer flow.
  * Equal studies give equal bytes, whatever threads, ranks and interruptions they had; a number read back
  * is the same double.
  */
@@ -67,9 +74,9 @@ json_t *wh_study_to_json(const wh_study_result_t *result);
 /* Each trial as a line of CSV, by RFC 4180 but with lines that end with a line feed. The tally has the
  * lines of all trials. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations
  * were missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off
- * mm; of each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the
- * trial drew, of each error whose width is not 0, told as a cause or not. Numbers read back as the same
- * double. 0, or -1 if writing failed. */
+ * mm; of a script with a flow its makespan_s, cycle_s and per_hour; of each wafer dX, dY, dz (mm) and tilt
+ * (deg) in its slot, empty if it is elsewhere; and what the trial drew, of each error whose width is not
+ * 0, told as a cause or not. Numbers read back as the same double. 0, or -1 if writing failed. */
 int wh_study_print_csv(const wh_study_result_t *result, FILE *out);
 
 /* An expectation's text without what was found. Writes at most `size` bytes. */

@@ -1,4 +1,5 @@
 /* A study's result as tables. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,6 +158,69 @@ static void print_wafers(const table_t *table) {
     }
 }
 
+/* --------------------------------------------------------------------------------------------------- flow */
+
+/* A value between the least and the most, whatever its bin. */
+static double within(double value, const wh_flow_spread_t *spread) {
+    return value < spread->least ? spread->least : value > spread->most ? spread->most : value;
+}
+
+static void add_figure(const table_t *table, wh_grid_t *grid, wh_flow_sum_t figure) {
+    static const char *const names[] = {"makespan s", "cycle s", "wafers/h"};
+    static const uint32_t permille[] = {1, 50, 500, 950, 999};
+    const wh_flow_sums_t *flow = table->tally->flow;
+    const double *without = table->study->study->flow;
+    if (flow->of[figure].count == 0) {
+        return;
+    }
+    const wh_flow_spread_t spread = wh_flow_sums_spread(flow, figure, without);
+    wh_grid_named_row(grid, names[figure]);
+    if (!isnan(without[figure])) {
+        wh_grid_number(grid, 1, WH_INK_PLAIN, without[figure]);
+    }
+    wh_grid_number(grid, 2, WH_INK_PLAIN, spread.mean);
+    wh_grid_number(grid, 3, WH_INK_PLAIN, spread.deviation);
+    wh_grid_number(grid, 4, WH_INK_PLAIN, spread.least);
+    for (size_t i = 0; i < sizeof permille / sizeof permille[0]; ++i) {
+        wh_grid_number(grid, 5 + i, WH_INK_PLAIN,
+                       within(wh_flow_sums_quantile(flow, figure, without, permille[i]), &spread));
+    }
+    wh_grid_number(grid, 10, WH_INK_PLAIN, spread.most);
+}
+
+/* Trials that are in none of these figures. */
+static void print_left_out(const table_t *table, uint64_t count, const char *one, const char *many) {
+    char text[WH_PRINT_NUMBER_SIZE];
+    if (count > 0) {
+        fprintf(table->frame.out, "%s of %s\n", wh_print_count(text, (int64_t)count),
+                count == 1 ? one : many);
+    }
+}
+
+static void print_flow(const table_t *table) {
+    const wh_flow_sums_t *flow = table->tally->flow;
+    if (!flow) {
+        return;
+    }
+    wh_grid_t *grid =
+        wh_grid_new(table->frame.style, 1,
+                    "flow;without errors{3};mean{3};deviation{3};min{3};0.1 %{3};5 %{3};50 %{3};"
+                    "95 %{3};99.9 %{3};max{3}");
+    for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        add_figure(table, grid, (wh_flow_sum_t)i);
+    }
+    wh_print_titled(&table->frame, "The flow", grid);
+    print_left_out(table, flow->unfinished,
+                   "the trials did not bring all wafers to their ends, and is not in the makespan",
+                   "the trials did not bring all wafers to their ends, and are not in the makespan");
+    print_left_out(table, flow->unsteady,
+                   "the trials has no steady cycle: its mean over the middle third of the wafers counts",
+                   "the trials have no steady cycle: their means over the middle third of the wafers count");
+    print_left_out(table, flow->no_cycle,
+                   "the trials has too few wafers for a cycle, and is in neither it nor the rate",
+                   "the trials have too few wafers for a cycle, and are in neither it nor the rate");
+}
+
 /* ------------------------------------------------------------------------------------------------- causes */
 
 /* The most drawn errors that are told. */
@@ -179,6 +243,7 @@ static void put_correlation(wh_grid_t *grid, size_t column, const wh_correlation
 
 static void add_cause(const table_t *table, wh_grid_t *grid, const wh_cause_told_t *told) {
     static const char *const quantities[] = {"dX", "dY", "dz", "tilt", "off"};
+    static const char *const figures[] = {"makespan", "cycle", "wafers/h"};
     const wh_study_t *study = table->study->study;
     char name[WH_CAUSE_NAME];
     wh_cause_name(told->cause, study->layout, name);
@@ -189,7 +254,9 @@ static void add_cause(const table_t *table, wh_grid_t *grid, const wh_cause_told
         put_correlation(grid, 2, &told->by_value);
     }
     put_correlation(grid, 3, &told->end);
-    if (told->end.determined) {
+    if (told->end.determined && told->is_flow) {
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%s", figures[told->quantity]);
+    } else if (told->end.determined) {
         wh_grid_text(grid, 4, WH_INK_PLAIN, "%s %s",
                      study->layout->wafers[study->wafers[told->wafer].wafer].name,
                      quantities[told->quantity]);
@@ -227,8 +294,24 @@ static void print_causes(const table_t *table) {
 
 /* -------------------------------------------------------------------------------------------------- worst */
 
+/* How bad it is: how far a wafer ends off; of times alone how long the flow took. */
+static void put_far(wh_grid_t *grid, size_t column, const wh_tally_trial_t *trial, const wh_study_t *study) {
+    const double makespan_s = trial->flow[WH_FLOW_SUM_MAKESPAN];
+    if (study->layout->tool && isnan(makespan_s)) {
+        wh_grid_text(grid, column, WH_INK_PLAIN, "no end");
+    } else if (study->layout->tool) {
+        wh_grid_number(grid, column, WH_INK_PLAIN, makespan_s);
+    } else if (trial->off <= 1e300) {
+        wh_grid_number(grid, column, WH_INK_PLAIN, trial->off);
+    } else {
+        wh_grid_text(grid, column, WH_INK_PLAIN, "elsewhere");
+    }
+}
+
 static void print_worst(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 1, "trial{0};result;off mm{4};why");
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1,
+                                  table->study->study->layout->tool ? "trial{0};result;makespan s{3};why"
+                                                                    : "trial{0};result;off mm{4};why");
     const size_t count =
         table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {
@@ -237,11 +320,7 @@ static void print_worst(const table_t *table) {
         wh_grid_row(grid);
         wh_grid_number(grid, 0, WH_INK_PLAIN, (double)trial->trial);
         wh_grid_text(grid, 1, trial->met ? WH_INK_GOOD : WH_INK_BAD, "%s", trial->met ? "ok" : "failed");
-        if (trial->off <= 1e300) {
-            wh_grid_number(grid, 2, WH_INK_PLAIN, trial->off);
-        } else {
-            wh_grid_text(grid, 2, WH_INK_PLAIN, "elsewhere");
-        }
+        put_far(grid, 2, trial, table->study->study);
         wh_trial_line_why(trial, why, sizeof why);
         wh_grid_text(grid, 3, WH_INK_PLAIN, "%s", why);
     }
@@ -271,7 +350,9 @@ static void print_how(const table_t *table) {
             "no error is drawn: the trials differ in the noise of sensors alone, if the script asks them");
         fputc('\n', table->frame.out);
     }
-    if (study->whole) {
+    if (study->layout->tool) {
+        fputs("each trial played its flow by times of its own\n", table->frame.out);
+    } else if (study->whole) {
         fprintf(table->frame.out,
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
@@ -288,6 +369,14 @@ static void print_alone(const table_t *table) {
     }
 }
 
+static void print_unlooked(const table_t *table) {
+    if (table->study->study->layout->tool) {
+        fputs("! " WH_RECORD_TIMES_ALONE "\n", table->frame.out);
+    } else if (!table->study->study->layout->collision) {
+        fputs("! " WH_RECORD_UNLOOKED "\n", table->frame.out);
+    }
+}
+
 /* Prints warnings that the rate does not show. */
 static void print_warnings(const table_t *table) {
     const wh_trial_lines_t *lines = &table->tally->lines;
@@ -296,9 +385,7 @@ static void print_warnings(const table_t *table) {
     for (size_t i = 0; i < lines->count; ++i) {
         caught += lines->lines[i].met && lines->lines[i].errors > 0 ? 1 : 0;
     }
-    if (!table->study->study->layout->collision) {
-        fputs("! " WH_RECORD_UNLOOKED "\n", table->frame.out);
-    }
+    print_unlooked(table);
     print_alone(table);
     if (never_came) {
         fprintf(table->frame.out, "! never came in the run without errors, and so were not tried: %s\n",
@@ -321,9 +408,11 @@ static void print_summary(const table_t *table) {
     char trials[WH_PRINT_NUMBER_SIZE];
     fputc('\n', out);
     print_how(table);
-    fputs("without errors: ", out);
-    (void)wh_print_figure(&table->frame);
-    fputc('\n', out);
+    if (!result->study->has_flow) {
+        fputs("without errors: ", out);
+        (void)wh_print_figure(&table->frame);
+        fputc('\n', out);
+    }
     wh_style_print(table->frame.style, out,
                    table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD,
                    "%s of %s trial%s ok", wh_print_count(met, (int64_t)table->tally->met),
@@ -350,6 +439,7 @@ int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_st
     print_errors(&table);
     print_events(&table);
     print_wafers(&table);
+    print_flow(&table);
     print_causes(&table);
     print_worst(&table);
     print_summary(&table);

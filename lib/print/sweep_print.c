@@ -37,13 +37,15 @@ static double figure_of(const wh_sweep_point_t *point, size_t k) {
     return value;
 }
 
-/* Behind the figures come words: what is busiest, and why a run is not ok. */
-enum { BUSIEST = FIGURES, WHY, COLUMNS };
+/* Behind the figures come counts of what went wrong, and words: what is busiest, and why a run is not ok. */
+enum { LATE = FIGURES, LOST, BUSIEST, WHY, COLUMNS };
 
 static bool has(const wh_sweep_point_t *point, size_t k) {
-    return k == BUSIEST ? point->busiest != NULL
-           : k == WHY   ? point->reason != NULL
-                        : (bool)isfinite(figure_of(point, k));
+    return k == LATE      ? point->late > 0
+           : k == LOST    ? point->lost > 0
+           : k == BUSIEST ? point->busiest != NULL
+           : k == WHY     ? point->reason != NULL
+                          : (bool)isfinite(figure_of(point, k));
 }
 
 /* True if any run has this. */
@@ -73,10 +75,18 @@ static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *sty
                       ? (size_t)snprintf(columns + length, sizeof columns - length, "%s", figures[k].heading)
                       : 0;
     }
-    (void)snprintf(columns + length, sizeof columns - length, "%s%s", shown[BUSIEST] ? ";busiest" : "",
-                   shown[WHY] ? ";why" : "");
+    (void)snprintf(columns + length, sizeof columns - length, "%s%s%s%s", shown[LATE] ? ";too long{0}" : "",
+                   shown[LOST] ? ";lost{0}" : "", shown[BUSIEST] ? ";busiest" : "", shown[WHY] ? ";why" : "");
     wh_grid_columns(grid, columns);
     return grid;
+}
+
+/* In a column that is shown if any run has such a count; 0 is left out. */
+static void add_count(size_t count, wh_grid_t *grid, size_t *column, bool is_shown) {
+    if (count > 0) {
+        wh_grid_number(grid, *column, WH_INK_BAD, (double)count);
+    }
+    *column += is_shown ? 1 : 0;
 }
 
 /* The figures and words from a column on. */
@@ -88,6 +98,8 @@ static void add_figures(const wh_sweep_point_t *point, wh_grid_t *grid, size_t c
         }
         column += shown[k] ? 1 : 0;
     }
+    add_count(point->late, grid, &column, shown[LATE]);
+    add_count(point->lost, grid, &column, shown[LOST]);
     if (point->busiest) {
         wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->busiest);
     }
@@ -114,16 +126,26 @@ static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i, c
     add_figures(point, grid, column, shown);
 }
 
-/* The run that is ok and has most wafers per hour, or else takes least time; point_count if none is ok. */
+/* True if each run that may be the fastest has a rate: then rates are compared, else times. */
+static bool have_rates(const wh_script_sweep_t *sweep) {
+    bool have = true;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        have = have && (!wh_sweep_may_lead(&sweep->points[i]) || isfinite(sweep->points[i].wafers_per_hour));
+    }
+    return have;
+}
+
+/* The run with most wafers per hour, or else the one that takes least time; point_count if none may be it. */
 static size_t find_best(const wh_script_sweep_t *sweep) {
+    const bool by_rate = have_rates(sweep);
     size_t best = sweep->point_count;
     for (size_t i = 0; i < sweep->point_count; ++i) {
         const wh_sweep_point_t *point = &sweep->points[i];
         const wh_sweep_point_t *before = best < sweep->point_count ? &sweep->points[best] : NULL;
-        const bool is_faster = before && isfinite(point->wafers_per_hour) && isfinite(before->wafers_per_hour)
-                                   ? point->wafers_per_hour > before->wafers_per_hour
-                                   : before && point->simulated_s < before->simulated_s;
-        if (point->verdict == WH_SWEEP_OK && (!before || is_faster)) {
+        const bool is_faster = !before   ? true
+                               : by_rate ? point->wafers_per_hour > before->wafers_per_hour
+                                         : point->simulated_s < before->simulated_s;
+        if (wh_sweep_may_lead(point) && (by_rate || !point->is_cut) && is_faster) {
             best = i;
         }
     }
@@ -132,10 +154,17 @@ static size_t find_best(const wh_script_sweep_t *sweep) {
 
 static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
     const size_t best = find_best(sweep);
+    size_t left_out = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const bool is_ok = sweep->points[i].verdict == WH_SWEEP_OK;
+        left_out += is_ok && !wh_sweep_may_lead(&sweep->points[i]) ? 1 : 0;
+    }
     if (best == sweep->point_count) {
         return;
     }
-    fputs("the fastest of them:", out);
+    fputs(left_out > 0 ? "the fastest of those that keep all wafers and windows, and are not cut:"
+                       : "the fastest of them:",
+          out);
     for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
         char value[WH_SWEEP_VALUE];
         fprintf(out, " --set %s=%s", sweep->axes[axis].name, wh_sweep_word(sweep, best, axis, value));
@@ -179,6 +208,25 @@ static void print_never_came(const wh_script_sweep_t *sweep, FILE *out) {
     }
 }
 
+static void print_loss(size_t count, const char *what, FILE *out) {
+    if (count > 0) {
+        fprintf(out, "! in %zu run%s that count%s as ok wafers %s\n", count, count == 1 ? "" : "s",
+                count == 1 ? "s" : "", what);
+    }
+}
+
+/* Runs that count as ok, and are not called the fastest all the same. */
+static void print_losses(const wh_script_sweep_t *sweep, FILE *out) {
+    size_t late = 0, lost = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const bool is_ok = sweep->points[i].verdict == WH_SWEEP_OK;
+        late += is_ok && sweep->points[i].late > 0 ? 1 : 0;
+        lost += is_ok && sweep->points[i].lost > 0 ? 1 : 0;
+    }
+    print_loss(late, "stayed beyond their windows", out);
+    print_loss(lost, "were lost", out);
+}
+
 /* Prints warnings that the rows do not show. */
 static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
     const wh_print_unlooked_t unlooked = count_unlooked(sweep);
@@ -187,6 +235,7 @@ static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
         caught += sweep->points[i].caught ? 1 : 0;
     }
     wh_print_unlooked(&unlooked, out);
+    print_losses(sweep, out);
     if (caught > 0) {
         fprintf(out, "! in %zu run%s that count as ok the script caught errors\n", caught,
                 caught == 1 ? "" : "s");
@@ -254,6 +303,12 @@ json_t *wh_sweep_put_run(const wh_sweep_point_t *point, json_t *object) {
     }
     if (point->is_cut) {
         wh_json_put(object, "cut", json_true());
+    }
+    if (point->late > 0) {
+        wh_json_put(object, "late", json_integer((json_int_t)point->late));
+    }
+    if (point->lost > 0) {
+        wh_json_put(object, "lost", json_integer((json_int_t)point->lost));
     }
     return wh_json_add(object, "hash",
                        point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);

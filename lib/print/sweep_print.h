@@ -6,8 +6,9 @@
  *   runs:   values (one for each axis), verdict ("ok", "failed", "bad"), reason (or null), simulated_s,
  *           wafers_per_hour, dr_proj_z, dr_proj_xy (mm, the largest at picks), gap (mm, the smallest, if
  *           collisions are looked for), checked (for collisions), caught_errors (ok, though its script caught
- *           errors), busiest (of a flow alone: the robot or station with the most work, and its share),
- *           hash; null: the run has none
+ *           errors), busiest (of a flow alone: the robot or station with the most work, and its share), cut
+ *           (true: with wafers not at their ends), late and lost (stays beyond windows, and wafers lost in a
+ *           flow: where there are any), hash; null: the run has none
  * Of wh_paces_t: format, ok, interrupted, script, saved (the share of time),
  *   base:   the members of a run but values
  *   faster: likewise, with name and gain (0.02: 2 % more; null: one of both is not ok), the greatest first

@@ -251,7 +251,9 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
 static void stand_in(wh_reader_t *reader, wh_layout_t *layout) {
     lua_State *L = reader->L;
     layout->tool = wh_layout_read_tool(reader);
-    lua_createtable(L, 0, 2);
+    lua_createtable(L, 0, 3);
+    lua_getfield(L, -2, "study");
+    lua_setfield(L, -2, "study");
     lua_newtable(L);
     lua_setfield(L, -2, "stations");
     lua_createtable(L, 1, 0);

@@ -338,6 +338,21 @@ static void refuse_beside(wh_reader_t *reader, const wh_layout_t *layout) {
     }
 }
 
+/* Robots that are times alone stand nowhere: processes alone are drawn. */
+static void read_timed_study(wh_reader_t *reader, wh_layout_t *layout) {
+    if (!wh_reader_open(reader, "study", wh_layout_timed_study_fields)) {
+        return;
+    }
+    wh_errors_t *errors = wh_layout_memory(reader->L, 1, sizeof *errors);
+    layout->errors = errors;
+    const wh_shape_t shape = wh_layout_read_spread_shape(reader, WH_SHAPE_NORMAL);
+    wh_reader_open_section(reader, "timing", wh_layout_timed_timing_fields);
+    errors->process.shape = wh_layout_read_spread_shape(reader, shape);
+    errors->process.width = wh_reader_apart(reader, "process");
+    wh_reader_leave(reader);
+    wh_reader_leave(reader);
+}
+
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     const section_t sections[] = {
         {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers,
@@ -350,6 +365,10 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
          layout->station_count, wh_layout_find_station, read_own_beams},
         {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
+    if (layout->tool) {
+        read_timed_study(reader, layout);
+        return;
+    }
     if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {
         return;
     }

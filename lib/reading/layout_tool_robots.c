@@ -67,15 +67,18 @@ static void fill_moves(wh_flow_tool_t *tool, int32_t robot, int64_t us) {
     }
 }
 
-static void read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
+/* Returns the usual one, us. */
+static int64_t read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
     if (wh_reader_push(reader, "move") != LUA_TTABLE) {
         lua_pop(reader->L, 1);
-        fill_moves(tool, robot, wh_timed_read_us(reader, "move", NAN));
-        return;
+        const int64_t us = wh_timed_read_us(reader, "move", NAN);
+        fill_moves(tool, robot, us);
+        return us;
     }
     lua_pop(reader->L, 1);
     (void)wh_reader_enter(reader, "move");
-    fill_moves(tool, robot, wh_timed_read_us(reader, "default", NAN));
+    const int64_t usual_us = wh_timed_read_us(reader, "default", NAN);
+    fill_moves(tool, robot, usual_us);
     size_t count = 0;
     const wh_timed_name_t *pairs = wh_timed_read_names(reader, "pairs of stations", &count);
     for (size_t i = 0; i < count; ++i) {
@@ -84,6 +87,7 @@ static void read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot)
         }
     }
     wh_reader_leave(reader);
+    return usual_us;
 }
 
 /* The straight way between the stations' places at the robot's speed. */
@@ -113,28 +117,37 @@ static void read_stand(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot)
     tool->robots[robot].at = wh_timed_find_station(reader, tool, "at", name);
 }
 
+/* Without a `swap`: the station's pick and place, and the usual move, whatever moves to and from it take. A
+ * robot with a speed has no usual one: with two arms it needs a `swap`. */
+static void fill_swaps(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, int64_t usual_us) {
+    if (usual_us == WH_FLOW_NONE && tool->robots[robot].arms > 1) {
+        wh_reader_refuse(reader, "swap", NULL,
+                         "s, or by station: with `speed` there is no move of one length");
+    }
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        const size_t of = wh_flow_of(tool, robot, (int32_t)s);
+        tool->swap_us[of] = tool->pick_us[of] + (usual_us > 0 ? usual_us : 0) + tool->place_us[of];
+    }
+}
+
 void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
     wh_reader_refuse_unknown(reader, wh_layout_timed_robot_fields);
     tool->robots[robot].arms = (int32_t)wh_reader_apart(reader, "arms");
     read_stand(reader, tool, robot);
     read_times(reader, tool, robot, "pick", NAN, tool->pick_us);
     read_times(reader, tool, robot, "place", NAN, tool->place_us);
+    int64_t usual_us = WH_FLOW_NONE;
     if (wh_reader_has(reader, "speed")) {
         if (wh_reader_has(reader, "move")) {
             wh_reader_refuse(reader, "speed", NULL, "nothing beside `move`");
         }
         fly(reader, tool, robot, at);
     } else {
-        read_moves(reader, tool, robot);
+        usual_us = read_moves(reader, tool, robot);
     }
     if (wh_reader_has(reader, "swap")) {
         read_times(reader, tool, robot, "swap", NAN, tool->swap_us);
-        return;
-    }
-    for (size_t s = 0; s < tool->station_count; ++s) {
-        const size_t of = wh_flow_of(tool, robot, (int32_t)s);
-        const size_t away = tool->station_count > 1 ? (s + 1) % tool->station_count : 0;
-        tool->swap_us[of] =
-            tool->pick_us[of] + tool->move_us[of * tool->station_count + away] + tool->place_us[of];
+    } else {
+        fill_swaps(reader, tool, robot, usual_us);
     }
 }

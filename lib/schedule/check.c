@@ -323,6 +323,16 @@ const wh_schedule_finding_t *wh_schedule_first(const wh_schedule_report_t *repor
     return NULL;
 }
 
+const wh_schedule_finding_t *wh_schedule_first_bar(const wh_schedule_report_t *report) {
+    for (size_t i = 0; i < report->count; ++i) {
+        const wh_schedule_finding_t *finding = &report->findings[i];
+        if (!finding->is_warning && finding->rule != WH_SCHEDULE_RULE_WINDOW) {
+            return finding;
+        }
+    }
+    return NULL;
+}
+
 bool wh_schedule_is_good(const wh_schedule_report_t *report) {
     return report->count == 0 && wh_schedule_is_looked(report) && report->scale == 1;
 }

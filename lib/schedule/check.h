@@ -84,6 +84,10 @@ const char *wh_schedule_unit(double scale);
 /* The first finding that is no warning; null: there is none. */
 const wh_schedule_finding_t *wh_schedule_first(const wh_schedule_report_t *report);
 
+/* The first finding for which it cannot be carried out: all but warnings and stays beyond windows, which
+ * happen; null: there is none. */
+const wh_schedule_finding_t *wh_schedule_first_bar(const wh_schedule_report_t *report);
+
 /* True if all rules up to WH_SCHEDULE_NEEDED were looked at. */
 bool wh_schedule_is_looked(const wh_schedule_report_t *report);
 

@@ -21,7 +21,7 @@ typedef struct {
 } wh_schedule_play_t;
 
 /* False, with a message, if no flow can be made of it: a wafer that is left aboard. The tool is a layout's,
- * and the schedule was found good with it. Close the play in any case. */
+ * and wh_schedule_first_bar found nothing with it. Close the play in any case. */
 bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, const wh_flow_tool_t *tool);
 void wh_schedule_play_close(wh_schedule_play_t *play, const wh_flow_tool_t *tool);
 

@@ -149,8 +149,8 @@ static void add_starts(lines_t *lines) {
 
 static void add_doings(lines_t *lines) {
     const wh_flow_figures_t *figures = lines->figures;
-    for (size_t i = 0; i < figures->way_count; ++i) {
-        const wh_flow_way_t *way = &figures->ways[i];
+    for (size_t i = 0; i < figures->ways.count; ++i) {
+        const wh_flow_way_t *way = &figures->ways.items[i];
         line_t *line = add_line(lines, WH_SCHEDULE_MOVE, way->begin_us, way->end_us);
         line->robot = way->robot;
         line->station = way->from;

@@ -63,6 +63,9 @@ static void add_beam(list_t *list, const wh_layout_t *layout, size_t beam) {
 }
 
 static void add_processes(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
+    for (size_t s = 0; layout->tool && s < layout->tool->station_count; ++s) {
+        add(list, WH_CAUSE_PROCESS, s, 0, errors->process.width);
+    }
     for (size_t s = 0; s < layout->station_count; ++s) {
         if (layout->stations[s].times && wh_flow_is_processing(&layout->stations[s].times->of)) {
             add(list, WH_CAUSE_PROCESS, s, 0, errors->process.width);
@@ -222,7 +225,8 @@ const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
 
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
     const bool is_wafer = cause->kind == WH_CAUSE_WAFER || cause->kind == WH_CAUSE_RIM;
-    return is_wafer ? layout->wafers[cause->index].name
+    return is_wafer                                          ? layout->wafers[cause->index].name
+           : cause->kind == WH_CAUSE_PROCESS && layout->tool ? layout->tool->stations[cause->index].name
            : cause->kind == WH_CAUSE_STATION || cause->kind == WH_CAUSE_PROCESS ||
                    cause->kind == WH_CAUSE_PORT
                ? layout->stations[cause->index].name

@@ -12,7 +12,7 @@
 #include "../text/output.h"
 #include "identity.h"
 
-#define FORMAT 6
+#define FORMAT 7
 /* The first byte of a state. */
 #define BEGIN '{'
 /* The check stands behind all bytes that it covers: `,"check":"0123456789abcdef"}`. */
@@ -125,10 +125,17 @@ static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
 /* Infinite is null. */
 static json_t *put_worst(const void *subject, size_t i) {
     const wh_tally_trial_t *trial = &((const wh_tally_t *)subject)->worst[i];
-    return json_pack("[I, b, o, b, I, I, I, I, I, I, I]", (json_int_t)trial->trial, trial->met,
+    return json_pack("[I, b, o, b, I, I, I, I, I, I, I, o, o, o]", (json_int_t)trial->trial, trial->met,
                      wh_json_real(trial->off), trial->ended, (json_int_t)trial->missed,
                      (json_int_t)trial->errors, (json_int_t)trial->elsewhere, (json_int_t)trial->kinds,
-                     (json_int_t)trial->missed_line, (json_int_t)trial->error, (json_int_t)trial->error_line);
+                     (json_int_t)trial->missed_line, (json_int_t)trial->error, (json_int_t)trial->error_line,
+                     wh_json_real(trial->flow[0]), wh_json_real(trial->flow[1]),
+                     wh_json_real(trial->flow[2]));
+}
+
+/* Null is NaN. */
+static double real_of(const json_t *value) {
+    return json_is_null(value) ? (double)NAN : json_number_value(value);
 }
 
 static bool take_worst(const json_t *list, wh_tally_t *tally) {
@@ -137,10 +144,10 @@ static bool take_worst(const json_t *list, wh_tally_t *tally) {
         json_int_t number;
         json_int_t counts[7];
         int met, ended;
-        const json_t *off;
-        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I, I, I]", &number, &met, &off,
-                            &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4], &counts[5],
-                            &counts[6]) == 0 &&
+        const json_t *off, *flow[WH_FLOW_SUM_FIGURES];
+        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I, I, I, o, o, o]", &number,
+                            &met, &off, &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4],
+                            &counts[5], &counts[6], &flow[0], &flow[1], &flow[2]) == 0 &&
                 number >= 0;
         if (sound) {
             const wh_tally_trial_t trial = {.trial = (uint64_t)number,
@@ -153,8 +160,9 @@ static bool take_worst(const json_t *list, wh_tally_t *tally) {
                                             .missed_line = (uint32_t)counts[4],
                                             .error = (uint32_t)counts[5],
                                             .error_line = (uint32_t)counts[6],
-                                            .off = json_is_null(off) ? (double)INFINITY
-                                                                     : json_number_value(off)};
+                                            .off =
+                                                json_is_null(off) ? (double)INFINITY : json_number_value(off),
+                                            .flow = {real_of(flow[0]), real_of(flow[1]), real_of(flow[2])}};
             wh_tally_note_worst(tally, &trial);
         }
     }
@@ -192,8 +200,7 @@ static bool take_relations(const wh_study_t *study, const json_t *list, wh_tally
     if (count == 0 && tally->trials == 0) {
         return json_is_array(list);
     }
-    wh_relations_need(relations, study->cause_count,
-                      wh_relations_wafers(study->cause_count, study->wafer_count));
+    wh_tally_need_relations(tally, study);
     bool sound = json_is_array(list) && count == wh_relations_size(relations);
     for (size_t i = 0; sound && i < count; ++i) {
         json_int_t high, low;
@@ -213,8 +220,40 @@ static json_t *put_lines(const wh_trial_lines_t *lines) {
     return made;
 }
 
+static json_t *put_flow(const wh_flow_sums_t *flow) {
+    return flow ? json_pack("[I, I, I, I, o, o, o]", (json_int_t)flow->trials, (json_int_t)flow->unfinished,
+                            (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle, put_sum(&flow->of[0]),
+                            put_sum(&flow->of[1]), put_sum(&flow->of[2]))
+                : json_null();
+}
+
+/* True if so many trials can have these counts. */
+static bool is_flow_possible(const wh_flow_sums_t *flow, uint64_t trials) {
+    return flow->trials == trials && flow->unfinished <= trials && flow->no_cycle <= trials &&
+           flow->unsteady <= trials - flow->no_cycle &&
+           flow->of[WH_FLOW_SUM_MAKESPAN].count == trials - flow->unfinished &&
+           flow->of[WH_FLOW_SUM_CYCLE].count == trials - flow->no_cycle &&
+           flow->of[WH_FLOW_SUM_PER_HOUR].count == trials - flow->no_cycle;
+}
+
+static bool take_flow(const wh_study_t *study, const json_t *list, wh_tally_t *tally) {
+    if (!study->has_flow || tally->trials == 0) {
+        return json_is_null(list);
+    }
+    wh_flow_sums_t *flow = wh_tally_need_flow(tally);
+    bool sound = json_array_size(list) == 4 + WH_FLOW_SUM_FIGURES &&
+                 take_count(json_array_get(list, 0), &flow->trials) &&
+                 take_count(json_array_get(list, 1), &flow->unfinished) &&
+                 take_count(json_array_get(list, 2), &flow->unsteady) &&
+                 take_count(json_array_get(list, 3), &flow->no_cycle);
+    for (size_t i = 0; sound && i < WH_FLOW_SUM_FIGURES; ++i) {
+        sound = take_sum(json_array_get(list, 4 + i), &flow->of[i]);
+    }
+    return sound && is_flow_possible(flow, tally->trials);
+}
+
 static json_t *put_tally(const wh_tally_t *tally) {
-    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "trials",
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "trials",
                      (json_int_t)tally->trials, "met", (json_int_t)tally->met, "ended",
                      (json_int_t)tally->ended, "whole", (json_int_t)tally->whole, "events", put_events(tally),
                      "expectations", wh_json_list(put_row, &tally->expectations, tally->expectations.count),
@@ -222,7 +261,7 @@ static json_t *put_tally(const wh_tally_t *tally) {
                      wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
                      wh_json_list(put_worst, tally, tally->worst_count), "relations",
                      wh_json_list(put_relation, &tally->relations, wh_relations_size(&tally->relations)),
-                     "lines", put_lines(&tally->lines));
+                     "lines", put_lines(&tally->lines), "flow", put_flow(tally->flow));
 }
 
 static bool take_counts(const json_t *root, wh_tally_t *tally) {
@@ -284,6 +323,7 @@ static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
            take_worst(json_object_get(root, "worst"), tally) && is_possible(study, tally) &&
+           take_flow(study, json_object_get(root, "flow"), tally) &&
            take_relations(study, json_object_get(root, "relations"), tally);
 }
 

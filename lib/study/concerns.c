@@ -83,6 +83,22 @@ static bool was_visited(const wh_decisions_t *decisions, size_t station, int32_t
     return was;
 }
 
+/* True if a route of the flow leads to a process in this station of a tool of times alone. */
+static bool is_processing(const wh_study_t *study, size_t station) {
+    const wh_flow_tool_t *tool = study->layout->tool;
+    const wh_flow_plan_t *plan = study->has_flow ? &study->nominal.record.flow->plan : NULL;
+    bool found = false;
+    for (size_t r = 0; plan && r < plan->route_count; ++r) {
+        for (size_t k = 1; k < plan->routes[r].step_count; ++k) {
+            const wh_flow_step_t *step = &plan->routes[r].steps[k];
+            found = found || (wh_flow_step_has(step, (int32_t)station) &&
+                              (step->process_us == WH_FLOW_NONE ? wh_flow_is_processing(&tool->stations[station])
+                                                                : step->process_us > 0));
+        }
+    }
+    return found;
+}
+
 static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
     const wh_layout_t *layout = concerns->study->layout;
     if (cause->robot != WH_NONE) {
@@ -94,6 +110,8 @@ static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
         return layout->collision || concerns->wafers[cause->index];
     case WH_CAUSE_STATION:
         return layout->collision || concerns->stations[cause->index];
+    case WH_CAUSE_PROCESS:
+        return !layout->tool || is_processing(concerns->study, cause->index);
     case WH_CAUSE_BEAM:
         return concerns->stations[layout->beams[cause->index].station];
     default:

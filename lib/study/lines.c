@@ -107,6 +107,9 @@ char *wh_trial_lines_text(const wh_trial_lines_t *lines) {
         put(out, line->error, ' ');
         put(out, line->error_line, ' ');
         put_real(out, line->off);
+        for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+            put_real(out, line->flow[f]);
+        }
         for (size_t e = 0; e < width; ++e) {
             put_real(out, lines->ends[i * width + e]);
         }
@@ -142,19 +145,23 @@ bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer
             sound = take(&text, &numbers[i]);
         }
         sound = sound && take_real(&text, &off);
-        const wh_trial_line_t line = {numbers[0],
-                                      (numbers[1] & MET) != 0,
-                                      (numbers[1] & WHOLE) != 0,
-                                      (numbers[1] & ENDED) != 0,
-                                      (uint32_t)numbers[2],
-                                      (uint32_t)numbers[3],
-                                      (uint32_t)numbers[4],
-                                      (uint32_t)numbers[5],
-                                      (uint32_t)numbers[6],
-                                      (uint32_t)numbers[7],
-                                      (uint32_t)numbers[8],
-                                      (uint32_t)numbers[9],
-                                      off};
+        wh_trial_line_t line = {numbers[0],
+                                (numbers[1] & MET) != 0,
+                                (numbers[1] & WHOLE) != 0,
+                                (numbers[1] & ENDED) != 0,
+                                (uint32_t)numbers[2],
+                                (uint32_t)numbers[3],
+                                (uint32_t)numbers[4],
+                                (uint32_t)numbers[5],
+                                (uint32_t)numbers[6],
+                                (uint32_t)numbers[7],
+                                (uint32_t)numbers[8],
+                                (uint32_t)numbers[9],
+                                off,
+                                {0}};
+        for (size_t f = 0; sound && f < WH_FLOW_SUM_FIGURES; ++f) {
+            sound = take_real(&text, &line.flow[f]);
+        }
         double *ends = wh_trial_lines_add(lines, &line, wafer_count);
         for (size_t e = 0; sound && e < wafer_count * WH_TRIAL_LINE_ENDS; ++e) {
             sound = take_real(&text, &ends[e]);

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "flow_sums.h"
+
 /* Where a wafer lies in its slot (mm, deg): dx, dy, dz, tilt. NaN if it is not where it should be, or lies
  * nowhere. */
 #define WH_TRIAL_LINE_ENDS 4
@@ -19,6 +21,7 @@ typedef struct {
     uint32_t missed_line;                /* of the first expectation that was missed; 0: none */
     uint32_t error, error_line; /* of the command that ended it, else of the first that failed; 0: none */
     double off;                 /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
+    double flow[WH_FLOW_SUM_FIGURES]; /* NaN: it has none, or there was no flow */
 } wh_trial_line_t;
 
 /* To be zeroed; `wafer_count` is that of the first line. */

@@ -4,6 +4,7 @@
 
 #include "../mcs/script_run.h"
 #include "causes.h"
+#include "flow_sums.h"
 
 /* The number of wafers whose end is told: the first ones that the run without errors takes. */
 #define WH_STUDY_WAFERS 100
@@ -38,6 +39,8 @@ typedef struct {
     wh_script_run_t nominal;  /* the run without errors */
     wh_decisions_t decisions; /* of it */
     const wh_layout_t *layout;
+    bool has_flow;                    /* the run without errors played a flow */
+    double flow[WH_FLOW_SUM_FIGURES]; /* its figures */
     const char *whole; /* why each trial runs the script whole, or null: most replay the decisions */
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
     size_t wafer_count;

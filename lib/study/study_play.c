@@ -110,7 +110,7 @@ static bool asks_the_cell(const wh_decisions_t *decisions) {
 /* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is checked. */
 static bool checks_nothing(const wh_study_t *study) {
     const wh_record_t *record = &study->nominal.record;
-    return record->ok && record->event_count == 0 &&
+    return record->ok && record->event_count == 0 && !study->has_flow &&
            (record->expectation_count == 0 || !asks_the_cell(&study->decisions)) &&
            (record->slices == 0 || !study->layout->collision);
 }
@@ -139,28 +139,58 @@ bool wh_study_is_of_noise(const wh_study_t *study) {
 
 /* Without widths all trials are alike, unless sensors with noise of their own are read. */
 static bool draws_something(const wh_study_t *study) {
-    return study->draws_nothing || study->drawn_count > 0 || wh_study_is_of_noise(study) ||
-           refuse_script(study->layout->path,
-                         "study: nothing is drawn, so that all trials are alike (expected a width "
-                         "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
+    const size_t drawn = study->layout->tool ? study->cause_count : study->drawn_count;
+    return study->draws_nothing || drawn > 0 || wh_study_is_of_noise(study) ||
+           refuse_script(
+               study->layout->path,
+               study->layout->tool
+                   ? "study: nothing is drawn, so that all trials are alike (expected a width above 0, "
+                     "as study = { timing = { process = 2 } }, and a process in the flow)"
+                   : "study: nothing is drawn, so that all trials are alike (expected a width "
+                     "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
+}
+
+/* True if something is drawn, or given, that the cell can have; else standard error says why not. */
+static bool has_errors(const wh_study_t *study) {
+    const wh_layout_t *layout = study->layout;
+    if (layout->tool && study->draws_nothing) {
+        return refuse_script(
+            layout->path,
+            "its robots are times alone, and nothing stands anywhere (expected robots with axes)");
+    }
+    return layout->errors || study->draws_nothing ||
+           refuse_script(layout->path,
+                         layout->tool
+                             ? "study: nil (expected what is drawn, as study = { timing = { process = "
+                               "2 } }, here or in the script)"
+                             : "study: nil (expected what is drawn, as study = { placement = { "
+                               "dx = 0.3 } }, here or in the script)");
 }
 
 /* True if trials make sense; else standard error says why not. */
 static bool is_fit(const wh_study_t *study) {
-    if (!study->layout || !study->nominal.record.wafers) {
+    if (!study->layout || (!study->nominal.record.wafers && !study->layout->tool)) {
         return refuse_script(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
-    if (!study->layout->errors && !study->draws_nothing) {
-        return refuse_script(study->layout->path,
-                             "study: nil (expected what is drawn, as study = { placement = { "
-                             "dx = 0.3 } }, here or in the script)");
+    if (!has_errors(study)) {
+        return false;
     }
     if (checks_nothing(study)) {
         return refuse_script(study->run.script,
-                             "takes no wafer and expects nothing of any, so that no trial could fail "
-                             "(expected get, put, or expect of where a wafer is)");
+                             study->layout->tool
+                                 ? "plays no flow, so that no trial could fail (expected flow)"
+                                 : "takes no wafer and expects nothing of any, so that no trial could fail "
+                                   "(expected get, put, or expect of where a wafer is)");
     }
     return true;
+}
+
+/* A tool of times alone draws processes: those of stations in which the flow has none tell nothing. */
+static void forget_aside(wh_study_t *study) {
+    if (study->layout->tool) {
+        memcpy(study->drawn, study->causes, study->cause_count * sizeof *study->drawn);
+        study->drawn_count = study->cause_count;
+    }
 }
 
 /* True if errors could change where several robots go. */
@@ -179,16 +209,21 @@ bool wh_study_open(wh_study_t *study) {
         return false;
     }
     study->layout = wh_mcs_layout(&study->nominal.mcs);
+    const wh_flow_t *flow = study->nominal.record.flow;
+    study->has_flow = flow && flow->figures.tool;
+    (void)wh_flow_sums_read(flow, study->flow);
     if (!is_fit(study)) {
         return false;
     }
-    study->whole = study->layout->collision ? "collisions are looked for"
-                   : goes_elsewhere(study)  ? "where each robot was taught its stations"
-                                            : study->decisions.unfit;
+    study->whole = study->layout->tool        ? "a flow"
+                   : study->layout->collision ? "collisions are looked for"
+                   : goes_elsewhere(study)    ? "where each robot was taught its stations"
+                                              : study->decisions.unfit;
     choose_wafers(study);
     if (!study->draws_nothing) {
         study->drawn = wh_causes_of(study->layout, &study->drawn_count);
         study->causes = wh_concerns_choose(study, &study->cause_count);
+        forget_aside(study);
     }
     return draws_something(study) && choose_lines(study);
 }

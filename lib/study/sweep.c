@@ -264,6 +264,22 @@ static void measure_flow(const wh_flow_t *flow, wh_sweep_point_t *point) {
     }
 }
 
+/* Stays beyond windows: as stations in a cell with axes told them, or as the flow did. */
+static void count_late(const wh_record_t *record, wh_sweep_point_t *point) {
+    size_t told = 0;
+    for (size_t i = 0; i < record->station_event_count; ++i) {
+        told += record->station_events[i].event.kind == WH_CLOCK_LATE ? 1 : 0;
+    }
+    const size_t counted = record->flow ? record->flow->figures.stays.late_count : 0;
+    point->late = counted > told ? counted : told;
+    point->lost = record->flow ? record->flow->figures.result.lost : 0;
+}
+
+bool wh_sweep_may_lead(const wh_sweep_point_t *point) {
+    return point->verdict == WH_SWEEP_OK && point->late == 0 && point->lost == 0 &&
+           (!point->is_cut || isfinite(point->wafers_per_hour));
+}
+
 static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     const wh_throughput_t throughput = wh_throughput(record);
     point->simulated_s = record->simulated_s;
@@ -274,6 +290,7 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
         point->wafers_per_hour = throughput.wafers_per_hour;
     }
     measure_picks(record, point);
+    count_late(record, point);
     note(record, point);
     for (size_t kind = 0; record->checked && kind < WH_CLEARANCES; ++kind) {
         point->gap = record->clearances[kind].parts[0] == WH_NONE

@@ -37,6 +37,7 @@ typedef struct {
     bool has_timed;       /* some of them are, beside robots with axes */
     bool is_cut;          /* its flow was cut with wafers not at their ends */
     bool caught;          /* it is ok, and its script caught an error */
+    size_t late, lost;    /* stays beyond windows, and wafers lost in a flow, whether or not they fail it */
     char *never_came;     /* the faults and errors on purpose that did not come; null: none */
     char *busiest;        /* of a flow: the robot or station that limits it, and its share; null: none */
     uint64_t hash;
@@ -66,6 +67,10 @@ void wh_sweep_close(wh_script_sweep_t *sweep);
 /* Runs them all on this number of threads, until wh_interrupt_came: runs that are not begun then stay undone.
  * False, and the reason on stderr, if there is no thread. */
 bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
+
+/* True if the run may be called the fastest: it is ok, no wafer stayed beyond a window, and none was lost. A
+ * cut one may be by its rate alone. */
+bool wh_sweep_may_lead(const wh_sweep_point_t *point);
 
 /* Plays one run, and judges it; the caller closes the run and frees the point. */
 void wh_sweep_point_play(const wh_script_run_options_t *options, wh_script_run_t *run,

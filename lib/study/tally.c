@@ -11,6 +11,7 @@ void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     memset(tally, 0, sizeof *tally);
     tally->wafer_count = wafer_count;
     tally->errors.by_text = true;
+    tally->flow_at = SIZE_MAX;
     tally->wafers = wh_array_new(wafer_count, sizeof *tally->wafers);
 }
 
@@ -25,9 +26,15 @@ void wh_tally_free(wh_tally_t *tally) {
     free_rows(&tally->expectations);
     free_rows(&tally->errors);
     free(tally->wafers);
+    free(tally->flow);
     wh_relations_free(&tally->relations);
     wh_trial_lines_free(&tally->lines);
     memset(tally, 0, sizeof *tally);
+}
+
+wh_flow_sums_t *wh_tally_need_flow(wh_tally_t *tally) {
+    tally->flow = tally->flow ? tally->flow : wh_array_new(1, sizeof *tally->flow);
+    return tally->flow;
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */
@@ -210,12 +217,22 @@ static void merge_wafers(wh_tally_t *tally, const wh_tally_t *other) {
 
 /* -------------------------------------------------------------------------------------------------- worst */
 
+/* The makespan of its flow; one without its end is the slowest. */
+static double slowness_of(const wh_tally_trial_t *trial) {
+    const double makespan_s = trial->flow[WH_FLOW_SUM_MAKESPAN];
+    return isnan(makespan_s) ? HUGE_VAL : makespan_s;
+}
+
 static bool is_worse(const wh_tally_trial_t *one, const wh_tally_trial_t *other) {
     if (one->met != other->met) {
         return !one->met;
     }
     if (one->off > other->off || one->off < other->off) {
         return one->off > other->off;
+    }
+    const double one_s = slowness_of(one), other_s = slowness_of(other);
+    if (one_s > other_s || one_s < other_s) {
+        return one_s > other_s;
     }
     return one->trial < other->trial;
 }
@@ -230,6 +247,44 @@ void wh_tally_note_worst(wh_tally_t *tally, const wh_tally_trial_t *trial) {
         --place;
     }
     tally->worst[place] = *trial;
+}
+
+/* --------------------------------------------------------------------------------------------------- flow */
+
+/* A flow counts as two wafers more, behind the others: one has its makespan for an end, the other one cycle
+ * and rate. */
+#define FLOW_ENDS 2
+
+void wh_tally_need_relations(wh_tally_t *tally, const wh_study_t *study) {
+    const size_t aside = study->has_flow ? FLOW_ENDS : 0;
+    const size_t wafers = wh_relations_wafers(study->cause_count, study->wafer_count + aside);
+    tally->flow_at = aside > 0 && wafers == study->wafer_count + aside ? study->wafer_count : SIZE_MAX;
+    wh_relations_need(&tally->relations, study->cause_count, wafers);
+}
+
+static void relate_flow(wh_tally_t *tally, const wh_study_t *study, const double figures[]) {
+    double ends[FLOW_ENDS][WH_RELATION_ENDS] = {{0}};
+    if (tally->flow_at == SIZE_MAX) {
+        return;
+    }
+    for (size_t i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        const size_t end = i == WH_FLOW_SUM_MAKESPAN ? 0 : 1;
+        ends[end][i - end] = wh_flow_sums_aside(figures, study->flow, (wh_flow_sum_t)i);
+    }
+    for (size_t i = 0; i < FLOW_ENDS; ++i) {
+        if (!isnan(ends[i][0])) {
+            wh_relations_add_wafer(&tally->relations, tally->flow_at + i, ends[i]);
+        }
+    }
+}
+
+wh_correlation_t wh_tally_relate(const wh_tally_t *tally, size_t cause, wh_flow_sum_t figure) {
+    const wh_correlation_t unknown = {false, 0, 0, 0};
+    const size_t end = figure == WH_FLOW_SUM_MAKESPAN ? 0 : 1;
+    return tally->flow && tally->flow_at != SIZE_MAX && cause < tally->relations.cause_count
+               ? wh_relations_end(&tally->relations, cause, tally->flow_at + end, (size_t)figure - end,
+                                  &tally->flow->of[figure])
+               : unknown;
 }
 
 /* ------------------------------------------------------------------------------------------- all together */
@@ -308,6 +363,7 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
                             .met = outcome->met,
                             .whole = outcome->whole,
                             .ended = record->failure != NULL};
+    const bool is_steady = wh_flow_sums_read(record->flow, line.flow);
     const wh_trial_t name = {study->seed, outcome->trial};
     ++tally->trials;
     tally->met += line.met ? 1 : 0;
@@ -317,11 +373,14 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
     add_expectations(tally, outcome->trial, record->expectations, record->expectation_count, false);
     add_expectations(tally, outcome->trial, record->implied, record->implied_count, true);
     add_errors(tally, outcome);
-    wh_relations_need(&tally->relations, study->cause_count,
-                      wh_relations_wafers(study->cause_count, study->wafer_count));
+    wh_tally_need_relations(tally, study);
     wh_causes_draw(study->causes, study->cause_count, study->layout, &name, tally->relations.drawn);
     wh_relations_add(&tally->relations, !line.met);
     add_wafers(tally, study, outcome, &line);
+    if (study->has_flow) {
+        wh_flow_sums_add(wh_tally_need_flow(tally), line.flow, study->flow, is_steady);
+        relate_flow(tally, study, line.flow);
+    }
     count_troubles(outcome, &line);
     if (outcome->trial < study->lines) {
         add_line(tally, study, outcome, &line);
@@ -341,6 +400,10 @@ void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other) {
     merge_rows(&tally->expectations, &other->expectations);
     merge_rows(&tally->errors, &other->errors);
     merge_wafers(tally, other);
+    if (other->flow) {
+        wh_flow_sums_merge(wh_tally_need_flow(tally), other->flow);
+    }
+    tally->flow_at = other->flow_at != SIZE_MAX ? other->flow_at : tally->flow_at;
     wh_relations_merge(&tally->relations, &other->relations);
     wh_trial_lines_merge(&tally->lines, &other->lines);
     for (size_t i = 0; i < other->worst_count; ++i) {

@@ -2,6 +2,7 @@
 #ifndef WH_STUDY_TALLY_H
 #define WH_STUDY_TALLY_H
 
+#include "flow_sums.h"
 #include "lines.h"
 #include "relations.h"
 #include "study.h"
@@ -57,9 +58,11 @@ typedef struct {
     wh_tally_rows_t expectations, errors;
     size_t wafer_count;
     wh_tally_wafer_t *wafers;
+    wh_flow_sums_t *flow;                   /* null: no trial had a flow */
     wh_tally_trial_t worst[WH_STUDY_WORST]; /* the worst first */
     size_t worst_count;
     wh_relations_t relations; /* between the draws and the results */
+    size_t flow_at;           /* of a flow, behind the wafers of relations; SIZE_MAX: nowhere */
     wh_trial_lines_t lines;   /* of the trials below study->lines */
 } wh_tally_t;
 
@@ -82,6 +85,15 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
 
 /* Adds all counts of another tally. The result does not depend on order, to the last bit. */
 void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other);
+
+/* Room for relations between the study's draws and its wafers' ends, and of a flow its figures. */
+void wh_tally_need_relations(wh_tally_t *tally, const wh_study_t *study);
+
+/* How a drawn error correlates with a figure of the flow. */
+wh_correlation_t wh_tally_relate(const wh_tally_t *tally, size_t cause, wh_flow_sum_t figure);
+
+/* The sums of flows, made if there are none. */
+wh_flow_sums_t *wh_tally_need_flow(wh_tally_t *tally);
 
 /* Puts expectations and errors in the order of line, place and text, and lines in that of trials, to be
  * printed. */

@@ -222,3 +222,13 @@ void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command) {
         command->grippers[g].valve = closed ? WH_VALVE_CLOSED : WH_VALVE_OPEN;
     }
 }
+
+/* The layout hands its tool on by const pointer; here it is still being made. */
+void wh_trial_draw_tool(const wh_layout_t *layout, const wh_trial_t *trial) {
+    wh_flow_tool_t *tool = NULL;
+    memcpy(&tool, &layout->tool, sizeof(void *));
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        const double drawn_s = wh_errors_draw_process(layout->errors, trial, s);
+        wh_flow_lengthen(&tool->stations[s], llround(1e6 * drawn_s));
+    }
+}

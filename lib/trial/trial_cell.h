@@ -59,6 +59,10 @@ wh_vec3_t wh_trial_cell_aside(const wh_trial_cell_t *trial_cell, size_t station,
 void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
                          wh_pose_t *base_from_slot);
 
+/* Each station of a tool of times alone processes as long as the trial draws. To be called once, before
+ * anything is made from the layout, which has `errors`. */
+void wh_trial_draw_tool(const wh_layout_t *layout, const wh_trial_t *trial);
+
 /* Replaces the valves' commands in slice `command->seq` by the delayed ones. Call it for each slice in
  * order, from 1. */
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command);

@@ -205,13 +205,37 @@ return function(native, tasks, commands, lookup, slot_map, calls)
 
   -- Plays the flow's present instant; the book of slots hears of the wafers that robots which are times alone have
   -- carried.
-  local function step_once()
+  local function step_instant()
     local seconds = native.step_flow()
     local station, slot, is_there = native.next_carried()
     while station do
       local note = is_there and slot_map.note_put or slot_map.note_taken
       note { station = station, slot = slot }
       station, slot, is_there = native.next_carried()
+    end
+    return seconds
+  end
+
+  -- Asks on_error of a station that takes too long, or does not begin: "retry" waits for it as long again. False: all goes on.
+  local function ask_of_stall()
+    local station, name, action, text = native.take_stall()
+    if not station then
+      return false
+    end
+    local answer = ask { kind = "error", station = name, action = action, number = 110, name = "STATION_TIMEOUT", text = text }
+    if answer ~= "retry" then
+      native.fail_flow(type(answer) == "string" and answer or text)
+    elseif not native.wait_on(station) then
+      native.fail_flow(("%s; retried %d times"):format(text, most_retries))
+    end
+    return true
+  end
+
+  -- Plays the present instant; s until the next one, nil: the flow is over.
+  local function step_once()
+    local seconds = step_instant()
+    while seconds and ask_of_stall() do
+      seconds = step_instant()
     end
     return seconds
   end

@@ -14,6 +14,12 @@ def wanted_side(model, station):
             look_for_side(model, station, wafer, robot, (begun, able, lying))
     if station.state in begun:
         return station.state
+    for robot in model.robots:
+        if robot.doing is None and robot.brings and robot.brings[0] is station and robot.brings[1] in robot.held() and any(
+                place.station is station and place.wafer is None
+                for place in model.destinations(robot, robot.brings[1], model.following(robot.brings[1], robot.brings[1].step), None, model.now)):
+            side = station.sides[robot.name]
+            able[side] = min(robot.brings[1].done, able.get(side, robot.brings[1].done))
     for wants in (begun, able, lying):
         if wants:
             return min(wants, key=lambda side: (wants[side], side != station.state))

@@ -373,10 +373,7 @@ class Model:
             for place in station.places:
                 if idle is not None and self.idle_due(place) is not None and self.idle_due(place) <= self.now:
                     self.start_clean(place, self.now)
-            if station.pump and not station.turning and station.busy_until <= self.now and station.name not in self.by_hand:
-                side = flow_locks.wanted_side(self, station)
-                if side and side != station.state and not station.down_at(self.now):
-                    self.turn(station, side)
+            self.turn_if_wanted(station)
 
     def idle_due(self, place):
         """When a clean after idle time is due, None if none is: once for each stretch without a wafer."""
@@ -391,6 +388,15 @@ class Model:
             for robot in self.robots:
                 if robot.doing is None and flow_orders.ask(self, robot):
                     begun = True
+        for station in self.stations.values():
+            if any(robot.brings and robot.brings[0] is station for robot in self.robots):
+                self.turn_if_wanted(station)
+
+    def turn_if_wanted(self, station):
+        if station.pump and not station.turning and station.busy_until <= self.now and station.name not in self.by_hand:
+            side = flow_locks.wanted_side(self, station)
+            if side and side != station.state and not station.down_at(self.now):
+                self.turn(station, side)
 
     def ask_relaxed(self):
         """Nobody can go on: shipped rules do without the conditions that only make a robot wait for more wafers to come."""

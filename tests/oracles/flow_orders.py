@@ -11,7 +11,7 @@ def pumped_by_hand(rule):
 
 def ask(model, robot):
     """Asks the rules once. True if the robot begins anything."""
-    robot.told = None
+    robot.told = robot.brings = None
     stranded = [wafer for wafer in robot.held() if wafer.stranded and not wafer.ended]
     if stranded:
         robot.told = "waiting for place"
@@ -117,6 +117,8 @@ def begin_told(model, robot, action):
     if action[0] == "keep":
         number = model.following(wafer, wafer.step)
         places = [place for place in model.destinations(robot, wafer, number, None, model.now) if place.station.name == action[1]]
+        if any(place.wafer is None for place in places):
+            robot.brings = (places[0].station, wafer)
         places = [place for place in places if place.wafer is None and place.clean_end is None and model.free(robot, place.station)]
         if places:
             model.place(robot, wafer, places[0])

@@ -68,6 +68,7 @@ class Robot:
         self.doing = None       # (end, what it does at the end)
         self.going = None       # the station to which it moves
         self.told = None        # why it waits, a class of IDLE_CLASSES
+        self.brings = None      # (station, wafer): it is told to bring this one, which it keeps, into an empty place there
         self.intervals = []     # (class, begin, end)
         self.behind = None      # backward: the step that was served last
         self.next = 0           # lists: the next action

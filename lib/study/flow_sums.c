@@ -1,0 +1,73 @@
+#include "flow_sums.h"
+
+#include <math.h>
+
+#define SCALE 1024.0
+
+const char *const wh_flow_sum_names[] = {"makespan_s", "cycle_s", "per_hour", NULL};
+
+static double without_of(const double without[], wh_flow_sum_t figure) {
+    return isnan(without[figure]) ? 0 : without[figure];
+}
+
+/* The time for a wafer, s; NaN: there is none. */
+static double cycle_of(const wh_flow_result_t *result) {
+    return result->period > 0    ? (double)result->cycle_us / 1e6 / result->period
+           : result->mean_us > 0 ? result->mean_us / 1e6
+                                 : (double)NAN;
+}
+
+bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES]) {
+    const wh_flow_result_t *result = flow && flow->figures.tool ? &flow->figures.result : NULL;
+    for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        figures[i] = (double)NAN;
+    }
+    if (!result || (result->end != WH_FLOW_DONE && result->end != WH_FLOW_CUT)) {
+        return false;
+    }
+    if (result->end == WH_FLOW_DONE && result->lost == 0) {
+        figures[WH_FLOW_SUM_MAKESPAN] = (double)result->makespan_us / 1e6;
+    }
+    figures[WH_FLOW_SUM_CYCLE] = cycle_of(result);
+    figures[WH_FLOW_SUM_PER_HOUR] = 3600 / figures[WH_FLOW_SUM_CYCLE];
+    return result->period > 0;
+}
+
+double wh_flow_sums_aside(const double figures[], const double without[], wh_flow_sum_t figure) {
+    return (figures[figure] - without_of(without, figure)) / SCALE;
+}
+
+void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady) {
+    ++sums->trials;
+    sums->unfinished += isnan(figures[WH_FLOW_SUM_MAKESPAN]) ? 1 : 0;
+    sums->no_cycle += isnan(figures[WH_FLOW_SUM_CYCLE]) ? 1 : 0;
+    sums->unsteady += !isnan(figures[WH_FLOW_SUM_CYCLE]) && !is_steady ? 1 : 0;
+    for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        if (!isnan(figures[i])) {
+            wh_sum_add(&sums->of[i], wh_flow_sums_aside(figures, without, (wh_flow_sum_t)i));
+        }
+    }
+}
+
+void wh_flow_sums_merge(wh_flow_sums_t *sums, const wh_flow_sums_t *other) {
+    sums->trials += other->trials;
+    sums->unfinished += other->unfinished;
+    sums->unsteady += other->unsteady;
+    sums->no_cycle += other->no_cycle;
+    for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+        wh_sum_merge(&sums->of[i], &other->of[i]);
+    }
+}
+
+wh_flow_spread_t wh_flow_sums_spread(const wh_flow_sums_t *sums, wh_flow_sum_t figure,
+                                     const double without[]) {
+    const wh_sum_t *of = &sums->of[figure];
+    const double from = without_of(without, figure);
+    return (wh_flow_spread_t){from + SCALE * wh_sum_mean(of), SCALE * wh_sum_deviation(of),
+                              from + SCALE * wh_sum_least(of), from + SCALE * wh_sum_most(of)};
+}
+
+double wh_flow_sums_quantile(const wh_flow_sums_t *sums, wh_flow_sum_t figure, const double without[],
+                             uint32_t permille) {
+    return without_of(without, figure) + SCALE * wh_sum_quantile(&sums->of[figure], permille);
+}
