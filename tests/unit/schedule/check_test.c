@@ -183,10 +183,10 @@ static void what_a_flow_writes(void **unused) {
     flow.plan.rule = WH_FLOW_SWAPPING;
     flow_finish(&flow);
     wh_flow_measure(&flow.tool, &flow.plan, WH_FLOW_VISITS, &figures);
-    assert_int_equal(figures.way_count, 0);
+    assert_int_equal(figures.ways.count, 0);
     wh_flow_figures_close(&figures);
     wh_flow_measure(&flow.tool, &flow.plan, WH_FLOW_WAYS, &figures);
-    assert_true(figures.way_count > 0);
+    assert_true(figures.ways.count > 0);
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     assert_true(wh_schedule_write(&figures, out));
