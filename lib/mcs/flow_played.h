@@ -58,7 +58,7 @@ typedef struct wh_flow_played {
     bool is_due;                /* something was told since the last step */
     wh_flow_carried_t *carried; /* what robots that are times alone have done, and nobody has noted yet */
     size_t carried_count, carried_capacity, noted_count;
-    int32_t waited; /* slices in which the simulator had no room for a wafer's order */
+    int32_t waited;               /* slices in which the simulator had no room for a wafer's order */
     wh_flow_stall_t stall;        /* that nobody has asked on_error of yet */
     wh_flow_patience_t *patience; /* by station */
 } wh_flow_played_t;
