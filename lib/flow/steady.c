@@ -138,7 +138,8 @@ static size_t natural_period(const wh_flow_tool_t *tool, const wh_flow_plan_t *p
             size_t places = 0, wafers = 1;
             for (size_t i = 0; i < step->station_count && k + 1 < plan->routes[r].step_count; ++i) {
                 const wh_flow_station_t *station = &tool->stations[step->stations[i]];
-                places += wh_flow_step_us(step, station, plan->wafers[0].recipe) > 0 ? (size_t)station->slots : 0;
+                places +=
+                    wh_flow_step_us(step, station, plan->wafers[0].recipe) > 0 ? (size_t)station->slots : 0;
                 wafers = (size_t)station->clean_after > wafers ? (size_t)station->clean_after : wafers;
             }
             longest = places * wafers > longest ? places * wafers : longest;

@@ -19,9 +19,10 @@ int64_t wh_flow_loaded_us(const wh_flow_state_t *state, int32_t robot, int32_t w
 
 int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
     const int32_t step = state->wafers[wafer].step;
-    return step == 0 ? 0
-                     : wh_flow_step_us(wh_flow_step_of(state->plan, wafer, step), &state->tool->stations[station],
-                                       wh_flow_recipe_of(state->plan, wafer, step));
+    return step == 0
+               ? 0
+               : wh_flow_step_us(wh_flow_step_of(state->plan, wafer, step), &state->tool->stations[station],
+                                 wh_flow_recipe_of(state->plan, wafer, step));
 }
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {

@@ -91,9 +91,10 @@ static bool is_processing(const wh_study_t *study, size_t station) {
     for (size_t r = 0; plan && r < plan->route_count; ++r) {
         for (size_t k = 1; k < plan->routes[r].step_count; ++k) {
             const wh_flow_step_t *step = &plan->routes[r].steps[k];
-            found = found || (wh_flow_step_has(step, (int32_t)station) &&
-                              (step->process_us == WH_FLOW_NONE ? wh_flow_is_processing(&tool->stations[station])
-                                                                : step->process_us > 0));
+            found =
+                found || (wh_flow_step_has(step, (int32_t)station) &&
+                          (step->process_us == WH_FLOW_NONE ? wh_flow_is_processing(&tool->stations[station])
+                                                            : step->process_us > 0));
         }
     }
     return found;
