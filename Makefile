@@ -37,7 +37,7 @@ include lib/build/switches.mk tests/tests.mk
 
 # These checks need tools of their own; tests/README.md says which claim each of them checks.
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz configurations
-PART := $(CORE_PARTS) board same_bits builds playground analysers wp random long hour long_counts coverage mutation host_mutation
+PART := $(CORE_PARTS) board played same_bits builds playground analysers wp random long hour long_counts coverage mutation host_mutation
 
 .PHONY: all deps library shared manual manual-tables install-library run spy playground view test quick bench check verify-core verify install uninstall clean help
 

@@ -43,6 +43,7 @@
 #include "motion/door.h"
 #include "motion/machine.h"
 #include "motion/track.h"
+#include "motion/slow.h"
 
 #include "cell/station.h"
 

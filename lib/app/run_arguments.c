@@ -5,12 +5,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../layout/axes.h"
-#include "../layout/grips.h"
 #include "../link/outputs.h"
 #include "../play/run_document.h"
 #include "../play/run_written.h"
 #include "../print/flow_history.h"
+#include "../print/segments.h"
 #include "../report/plots.h"
 #include "../schedule/write.h"
 #include "../text/array.h"
@@ -18,7 +17,6 @@
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
-#include "segments.h"
 #include "watch.h"
 
 /* Seconds: what --from and --to take. */
@@ -245,40 +243,14 @@ typedef struct {
     const wh_flow_figures_t *figures;
 } history_t;
 
-/* The kind of layout whose segments can be written; null if the layout is of that kind. */
-static const char *segments_expect(const wh_layout_t *layout) {
-    if (!layout) {
-        return NULL;
+/* False, with a message, for a run that cannot be played again. */
+static bool make_segments(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs, wh_segments_t *segments) {
+    const char *path = arguments->segments_path;
+    const char *expected = path ? wh_segments_make(segments, mcs, path) : NULL;
+    if (expected) {
+        fprintf(stderr, "--segments: %s: not written (expected %s)\n", path, expected);
     }
-    if (layout->tool) {
-        return "robots with axes";
-    }
-    if (layout->machine.carrier) {
-        return WH_AXES_USUAL;
-    }
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        if (layout->stations[s].vias.count > 0) {
-            return "a layout without `via`";
-        }
-    }
-    if (wh_layout_has_grips(layout)) {
-        return "a layout whose wafers lie face up, on grippers with vacuum";
-    }
-    return wh_layout_has_loaded(layout) ? "a layout without `loaded`" : NULL;
-}
-
-/* False, with a message, for a run that would differ when it is played again. */
-static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
-    const wh_layout_t *layout = wh_mcs_layout(mcs);
-    const char *unplayed = wh_mcs_kept(mcs)->unplayed;
-    const char *expected = segments_expect(layout);
-    if (!arguments->segments_path || (!unplayed && !expected)) {
-        return true;
-    }
-    const bool is_unplayed = unplayed && !(layout && layout->machine.carrier);
-    fprintf(stderr, "--segments: %s: not written (expected %s%s)\n", arguments->segments_path,
-            is_unplayed ? "a script without " : "", is_unplayed ? unplayed : expected);
-    return false;
+    return !expected;
 }
 
 static bool write_history(void *user, FILE *out) {
@@ -302,15 +274,18 @@ static bool has_flow(const char *option, const char *path, const wh_record_t *re
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
-    wh_segments_t segments = {&run->mcs, arguments->segments_path};
+    wh_segments_t segments = {0};
     history_t history = {arguments, run->record.flow ? &run->record.flow->figures : NULL};
-    return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
-           has_flow("--history", arguments->history_path, &run->record) &&
-           has_flow("--schedule", arguments->schedule_path, &run->record) &&
-           wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
-           wh_file_write("--schedule", arguments->schedule_path, write_schedule, &history, NULL) &&
-           wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
-           write_report(arguments, run, signals);
+    const bool good =
+        wh_run_files_are_apart(arguments, layout) && make_segments(arguments, &run->mcs, &segments) &&
+        has_flow("--history", arguments->history_path, &run->record) &&
+        has_flow("--schedule", arguments->schedule_path, &run->record) &&
+        wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
+        wh_file_write("--schedule", arguments->schedule_path, write_schedule, &history, NULL) &&
+        wh_file_write("--segments", arguments->segments_path, wh_segments_write, &segments, NULL) &&
+        write_report(arguments, run, signals);
+    wh_segments_free(&segments);
+    return good;
 }
 
 /* Handles a script that ends with an error of its own: the run before it is shown, if it has a slice,

@@ -80,8 +80,6 @@ void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh
     segment->gripper = 0; /* any gripper: all sensor bits are on, or none */
     segment->seconds = luaL_checknumber(L, -1);
     lua_pop(L, 1);
-    mcs->kept.unplayed = awaited->kind >= WH_AWAITED_STATION ? "waits for what a station does"
-                                                             : "waits for a door or a flipper";
     wh_decisions_measured(mcs->wanted.decisions, "if a mechanism has arrived");
 }
 

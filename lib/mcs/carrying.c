@@ -18,6 +18,10 @@ bool wh_carrying_matters(const wh_layout_t *layout) {
     return wh_layout_has_loaded(layout) || wh_layout_has_passive(layout);
 }
 
+bool wh_carrying_is_full(const wh_slowness_t *slowness) {
+    return slowness->pace == 1 && slowness->share.speed == 1 && slowness->share.acceleration == 1;
+}
+
 void wh_carrying_start(wh_track_t *track, const wh_layout_t *layout) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         if (layout->grips[g].kind == WH_GRIP_PASSIVE) {
@@ -128,71 +132,17 @@ static wh_real_t excess_of(const wh_track_t *begun, const wh_layout_t *layout, u
     return excess;
 }
 
-/* A machine whose axes all go at a slower pace. */
-typedef struct {
-    wh_machine_t machine;
-    wh_carrier_t carriers[2 * WH_AXES / WH_ROBOT_AXES];
-} slow_t;
-
-/* The speed by a pace, the acceleration by its square, the jerk by its cube; and by the motion's share. */
-typedef struct {
-    wh_motion_share_t share;
-    wh_real_t pace;
-} slowness_t;
-
-static void slow_down(wh_limits_t *limits, const slowness_t *slowness) {
-    const wh_real_t pace = slowness->pace;
-    limits->speed *= slowness->share.speed * pace;
-    limits->acceleration *= slowness->share.acceleration * pace * pace;
-    limits->jerk *= slowness->share.acceleration * pace * pace * pace;
-}
-
-static wh_carrier_t *copy_carrier(slow_t *slow, size_t *used, const wh_carrier_t *carrier,
-                                  const slowness_t *slowness) {
-    wh_carrier_t *copy = &slow->carriers[(*used)++];
-    *copy = *carrier;
-    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
-        slow_down(&copy->chain.limits[axis], slowness);
-    }
-    if (carrier->second) {
-        copy->second = copy_carrier(slow, used, carrier->second, slowness);
-    }
-    return copy;
-}
-
-static void make_slow(slow_t *slow, const wh_machine_t *machine, const slowness_t *slowness) {
-    size_t used = 0;
-    slow->machine = *machine;
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        slow_down(&slow->machine.robot.limits[axis], slowness);
-    }
-    slow_down(&slow->machine.chuck_limits, slowness);
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        slow_down(&slow->machine.mounts[g].limits, slowness);
-    }
-    const wh_carrier_t **link = &slow->machine.carrier;
-    for (const wh_carrier_t *carrier = machine->carrier; carrier; carrier = carrier->next) {
-        wh_carrier_t *copy = copy_carrier(slow, &used, carrier, slowness);
-        *link = copy;
-        link = &copy->next;
-    }
-}
-
-static wh_status_t begin_slowly(wh_track_t *track, const wh_segment_t *segment, const slowness_t *slowness) {
-    const wh_machine_t *machine = track->machine;
+static wh_status_t begin_slowly(wh_track_t *track, const wh_segment_t *segment,
+                                const wh_slowness_t *slowness) {
     const wh_real_t pace = slowness->pace;
     wh_segment_t slowed = *segment;
-    slow_t slow;
-    if (pace == 1 && slowness->share.speed == 1 && slowness->share.acceleration == 1) {
+    wh_slow_t room;
+    if (wh_carrying_is_full(slowness)) {
         return wh_track_begin(track, segment);
     }
-    make_slow(&slow, machine, slowness);
     slowed.speed *= pace;
     slowed.acceleration *= pace * pace;
-    track->machine = &slow.machine;
-    const wh_status_t status = wh_track_begin(track, &slowed);
-    track->machine = machine;
-    return status;
+    return wh_track_begin_slowly(track, &slowed, slowness, &room);
 }
 
 /* Slices cut a slower motion at other places, so its differences are not exactly those expected
@@ -201,17 +151,16 @@ static wh_status_t begin_slowly(wh_track_t *track, const wh_segment_t *segment, 
 #define MARGIN WH_REAL(1e-4)
 
 wh_status_t wh_carrying_begin(wh_track_t *track, const wh_layout_t *layout, const wh_segment_t *segment,
-                              const wh_motion_share_t *share, uint32_t loaded, int64_t *slices) {
-    slowness_t slowness = {*share, 1};
-    wh_status_t status = begin_slowly(track, segment, &slowness);
+                              wh_slowness_t *slowness, uint32_t loaded, int64_t *slices) {
+    wh_status_t status = begin_slowly(track, segment, slowness);
     *slices = 0;
     for (int i = 0; loaded != 0 && moves_axes(segment) && status == WH_OK && i < MOST_TRIES; ++i) {
         const wh_real_t excess = excess_of(track, layout, loaded, slices);
         if (!(excess > 1)) {
             break;
         }
-        slowness.pace /= excess * (1 + MARGIN);
-        status = begin_slowly(track, segment, &slowness);
+        slowness->pace /= excess * (1 + MARGIN);
+        status = begin_slowly(track, segment, slowness);
     }
     return status;
 }

@@ -12,7 +12,7 @@
 #define WH_MCS_CARRYING_H
 
 #include "../layout/layout.h"
-#include "../motion/track.h"
+#include "../motion/slow.h"
 
 /* True if the motion of this cell depends on what the grippers carry: it has `loaded` or passive pads.
  * Otherwise the functions below only call wh_track_begin. */
@@ -22,15 +22,14 @@ bool wh_carrying_matters(const wh_layout_t *layout);
  * open. */
 void wh_carrying_start(wh_track_t *track, const wh_layout_t *layout);
 
-/* The parts of all axes' limits that a motion may use, above 0 to 1; the jerk's is the acceleration's. */
-typedef struct {
-    wh_real_t speed, acceleration;
-} wh_motion_share_t;
+/* True for a motion with the axes' own limits. */
+bool wh_carrying_is_full(const wh_slowness_t *slowness);
 
 /* wh_track_begin for the segment with these parts of the limits, slowed as needed while the grippers of
- * `loaded` (bits) carry wafers. `slices` counts the slices that were looked at. */
+ * `loaded` (bits) carry wafers: the slowness, whose pace is 1 at first, gets the pace. `slices` counts the
+ * slices that were looked at. */
 wh_status_t wh_carrying_begin(wh_track_t *track, const wh_layout_t *layout, const wh_segment_t *segment,
-                              const wh_motion_share_t *share, uint32_t loaded, int64_t *slices);
+                              wh_slowness_t *slowness, uint32_t loaded, int64_t *slices);
 
 /* An acceleration that passive pads do not hold. */
 typedef struct {

@@ -109,7 +109,6 @@ void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t 
                         .seq = pass->seq,
                         .goes_on = true};
     mcs->command.latch = order;
-    mcs->kept.unplayed = "beams at a station's door";
 }
 
 /* The station at stack index 1, and the beams that the robot of the gripper at 2 passes there. */

@@ -205,9 +205,7 @@ static void pass_slices(wh_mcs_t *mcs, int64_t slices) {
     mcs->recorder.part_count = 0;
     record->counted.left_out += slices;
     record->counted.moving += moves ? slices : 0;
-    if (mcs->wanted.keeps_segments) {
-        mcs->kept.segments[mcs->kept.segment_count - 1].slices += slices;
-    }
+    wh_mcs_keep_left_out(mcs, slices);
 }
 
 /* --------------------------------------------------------------------------------------------- verifying */

@@ -104,7 +104,6 @@ static int arm_edge(lua_State *L) {
     edge->missed = 0;
     edge->armed = true;
     mcs->command.scan = order;
-    mcs->kept.unplayed = "a scan of a wafer's edge";
     return 0;
 }
 

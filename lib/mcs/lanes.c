@@ -266,8 +266,6 @@ static int open_lanes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     if (!mcs->lanes) {
         wh_decisions_measured(mcs->wanted.decisions, "tasks");
-        mcs->kept.unplayed = "tasks";
-        mcs->wanted.keeps_segments = false;
         mcs->lanes = wh_array_new(1, sizeof *mcs->lanes);
         mcs->lanes->count = 1;
         for (size_t i = 0; i < WH_MCS_LANES; ++i) {
@@ -351,6 +349,7 @@ static int start_segment(lua_State *L) {
     lane->track = mcs->track;
     mcs->track = stands;
     wh_mcs_check_segment(L, mcs, &planned.track.segment, lane->axes);
+    lane->kept = wh_mcs_keep_segment(mcs, &lane->track, &planned, lane->axes);
     lane->task = planned.task;
     lane->awaited = planned.awaited;
     lane->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & lane->grippers & mcs->state.sensors};

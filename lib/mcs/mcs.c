@@ -392,11 +392,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
 }
 
 void wh_mcs_close(wh_mcs_t *mcs) {
-    free(mcs->kept.segments);
-    free(mcs->kept.faults);
-    mcs->kept.segments = NULL;
-    mcs->kept.faults = NULL;
-    mcs->kept.segment_count = 0;
+    wh_mcs_free_kept(&mcs->kept);
     wh_mcs_free_lanes(mcs);
     wh_mcs_free_edge(&mcs->measuring.edge);
     wh_mcs_free_turns(&mcs->measuring.turns);

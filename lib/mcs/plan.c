@@ -218,32 +218,26 @@ static void refuse_slip(lua_State *L, wh_mcs_t *mcs, const wh_carrying_slip_t *s
     wh_mcs_refuse_request(L, mcs, WH_STATUS_SLIP_AHEAD, reason);
 }
 
-static bool is_whole(const wh_motion_share_t *share) {
-    return share->speed == 1 && share->acceleration == 1;
-}
-
 /* The parts of the limits that the segment at stack index 1 may use, in `share` = { speed, acceleration }. */
-static wh_motion_share_t read_share(lua_State *L, wh_mcs_t *mcs) {
-    wh_motion_share_t share = {1, 1};
+static wh_slowness_t read_share(lua_State *L) {
+    wh_slowness_t slowness = {{1, 1}, 1};
     if (lua_getfield(L, 1, "share") == LUA_TTABLE) {
         lua_rawgeti(L, -1, 1);
         lua_rawgeti(L, -2, 2);
-        share = (wh_motion_share_t){luaL_checknumber(L, -2), luaL_checknumber(L, -1)};
+        slowness.share = (wh_motion_share_t){luaL_checknumber(L, -2), luaL_checknumber(L, -1)};
     }
     lua_settop(L, 1);
-    if (!is_whole(&share)) {
-        mcs->kept.unplayed = "a share of the limits' speed or acceleration";
-    }
-    return share;
+    return slowness;
 }
 
 /* Begins the segment as slowly as the carried wafers need. */
 static wh_status_t begin_carrying(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment,
-                                  const wh_motion_share_t *share) {
+                                  wh_slowness_t *slowness) {
     const uint32_t loaded = wh_carrying_matters(mcs->layout) ? find_loaded(L, mcs) : 0;
     wh_carrying_slip_t slip;
     int64_t slices;
-    const wh_status_t status = wh_carrying_begin(&mcs->track, mcs->layout, segment, share, loaded, &slices);
+    const wh_status_t status =
+        wh_carrying_begin(&mcs->track, mcs->layout, segment, slowness, loaded, &slices);
     wh_sandbox_charge(L, wh_mcs_steps(slices));
     if (status == WH_OK && wh_carrying_slips(&mcs->track, mcs->layout, loaded, &slip)) {
         refuse_slip(L, mcs, &slip);
@@ -288,10 +282,11 @@ void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
         planned->task.share = WH_SHARE_WAITING;
     }
     planned->may_lose = may_lose(mcs->track.machine, &planned->task);
-    const wh_motion_share_t share = read_share(L, mcs);
-    const bool is_plain = is_whole(&share) && !wh_carrying_matters(mcs->layout);
-    const wh_status_t status =
-        is_plain ? wh_track_begin(&mcs->track, &segment) : begin_carrying(L, mcs, &segment, &share);
+    planned->slowness = read_share(L);
+    memcpy(planned->points, mcs->running.via_points, sizeof planned->points);
+    const bool is_plain = wh_carrying_is_full(&planned->slowness) && !wh_carrying_matters(mcs->layout);
+    const wh_status_t status = is_plain ? wh_track_begin(&mcs->track, &segment)
+                                        : begin_carrying(L, mcs, &segment, &planned->slowness);
     if (status != WH_OK) {
         refuse_segment(L, mcs, status, &segment);
     }

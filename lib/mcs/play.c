@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "../script/wh_module_values.h"
-#include "../text/array.h"
 #include "../text/clock.h"
 #include "carrying.h"
 #include "clocks.h"
@@ -11,17 +10,6 @@
 #include "native.h"
 #include "playing.h"
 #include "ramp.h"
-
-/* Notes a slice that goes out: its faults, and one more slice of the running segment. */
-static void keep_slice(wh_mcs_t *mcs) {
-    const wh_command_t *command = &mcs->command;
-    for (size_t i = 0; i < command->fault_count; ++i) {
-        mcs->kept.faults = wh_array_grow(mcs->kept.faults, mcs->kept.fault_count, &mcs->kept.fault_capacity,
-                                         sizeof *mcs->kept.faults);
-        mcs->kept.faults[mcs->kept.fault_count++] = (wh_played_fault_t){command->seq, command->faults[i]};
-    }
-    ++mcs->kept.segments[mcs->kept.segment_count - 1].slices;
-}
 
 /* Plays one slice: the command goes in, the state comes out, and the listeners get both. */
 static wh_status_t exchange_slice(wh_mcs_t *mcs) {
@@ -31,9 +19,7 @@ static wh_status_t exchange_slice(wh_mcs_t *mcs) {
     if (partners->lossy && !mcs->lanes && mcs->track.segment_slice == mcs->track.segment_slices) {
         partners->lossy->await(partners->user);
     }
-    if (mcs->wanted.keeps_segments) {
-        keep_slice(mcs);
-    }
+    wh_mcs_keep_slice(mcs);
     const wh_status_t status = mcs->link->exchange(mcs->link, &mcs->command, &mcs->state);
     for (size_t i = 0; i < mcs->listeners.count; ++i) {
         mcs->listeners.of[i].hear(mcs->listeners.of[i].user, &mcs->command, &mcs->state);
@@ -93,8 +79,8 @@ static bool slows_down(wh_mcs_t *mcs) {
     const bool is_usual = stop == WH_LAYOUT_STOP_USUAL && mcs->wanted.slows_down;
     const bool slows = stop == WH_LAYOUT_STOP_RAMP || is_usual;
     if (slows) {
-        mcs->kept.unplayed = "a STOP that slows down";
-        wh_decisions_measured(mcs->wanted.decisions, mcs->kept.unplayed);
+        mcs->kept.slows_down = true;
+        wh_decisions_measured(mcs->wanted.decisions, "a STOP that slows down");
     }
     return slows;
 }
@@ -141,9 +127,7 @@ wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
     if (status != WH_OK && !has_gone_out(mcs)) {
         memcpy(mcs->track.axes, before, sizeof mcs->track.axes);
         --mcs->track.slice;
-        if (mcs->wanted.keeps_segments) {
-            --mcs->kept.segments[mcs->kept.segment_count - 1].slices;
-        }
+        wh_mcs_drop_slice(mcs);
     }
     wh_vacuum_watch_slice(&mcs->running.watch, mcs->state.sensors);
     return status;
@@ -245,15 +229,6 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     return state;
 }
 
-static void keep_segment(wh_mcs_t *mcs) {
-    if (mcs->wanted.keeps_segments) {
-        mcs->kept.segments = wh_array_grow(mcs->kept.segments, mcs->kept.segment_count,
-                                           &mcs->kept.segment_capacity, sizeof *mcs->kept.segments);
-        mcs->kept.segments[mcs->kept.segment_count++] =
-            (wh_kept_segment_t){mcs->track.segment, 0, false, mcs->recorder.running};
-    }
-}
-
 /* Begins a segment of the last rehearsal as planned there, in the track's present slice. */
 static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     *planned = mcs->rehearsal.planned.segments[wh_mcs_index(L, 1, mcs->rehearsal.planned.count)];
@@ -280,7 +255,7 @@ static int play_segment(lua_State *L) {
     wh_planned_t planned;
     wh_mcs_begin_segment(L, mcs, &planned);
     wh_mcs_check_segment(L, mcs, &planned.track.segment, mcs->running.axes);
-    keep_segment(mcs);
+    mcs->running.kept = wh_mcs_keep_segment(mcs, &mcs->track, &planned, UINT32_MAX);
     mcs->recorder.task = planned.task;
     mcs->running.awaited = planned.awaited;
     mcs->running.watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
@@ -289,9 +264,6 @@ static int play_segment(lua_State *L) {
                       segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,
                       (int32_t)planned.may_lose);
     const bool done = play_through(L, mcs) == WH_TRACK_DONE;
-    if (mcs->wanted.keeps_segments) {
-        mcs->kept.segments[mcs->kept.segment_count - 1].ended = true;
-    }
     const int32_t lost =
         wh_vacuum_watch_lost(&mcs->running.watch, mcs->track.valves, mcs->state.gripper_count);
     wh_decisions_read(mcs->wanted.decisions, WH_DECISION_END, lost, done);

@@ -8,7 +8,7 @@
 #define WH_MCS_REHEARSAL_H
 
 #include "../layout/grips.h"
-#include "../motion/track.h"
+#include "../motion/slow.h"
 #include "../record/record.h"
 #include "../sim/slice.h"
 #include "../trial/nominal.h"
@@ -60,6 +60,8 @@ typedef struct {
 /* A segment that was planned, ready to be played: a track that has just begun it. */
 typedef struct {
     wh_track_t track;
+    wh_via_point_t points[WH_VIA_POINTS]; /* of its segment, which the track no longer has */
+    wh_slowness_t slowness;
     wh_task_t task;
     uint32_t may_lose; /* bit g: gripper g could lose a wafer in it */
     wh_awaited_t awaited;

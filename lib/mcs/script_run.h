@@ -11,7 +11,7 @@ typedef struct {
     size_t parameter_count;
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
     wh_mcs_listener_t listener; /* all null: no listener */
-    bool keep_segments;         /* run->mcs.kept.segments then holds the played segments */
+    bool keep_segments;         /* run->mcs.kept then has what was played */
     bool drops_rows;            /* of what is over, see record/dropped.h */
     wh_flow_keep_t keeps;       /* of a flow, in run->record.flow; wh_schedule_write needs WH_FLOW_WAYS */
     bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */

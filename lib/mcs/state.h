@@ -7,11 +7,11 @@
 #include "../layout/grips.h"
 #include "../record/recorder.h"
 #include "../script/sandbox.h"
-#include "../sim/played.h"
 #include "../trial/decisions.h"
 #include "../trial/origins.h"
 #include "../trial/trial_cell.h"
 #include "controller.h"
+#include "kept.h"
 #include "partners.h"
 #include "ramp.h"
 #include "rehearsal.h"
@@ -26,14 +26,6 @@
 
 /* Room for a script's word, or for "the script's end". */
 #define WH_MCS_WORD 20
-
-/* A segment that was played, and the command of the record that asked for it (or WH_NONE). */
-typedef struct {
-    wh_segment_t segment;
-    int64_t slices; /* its slices */
-    bool ended;     /* it was not cut off */
-    int32_t command;
-} wh_kept_segment_t;
 
 /* The cell in this process: its simulator, and the collision check of it. */
 typedef struct {
@@ -115,6 +107,7 @@ typedef struct {
     wh_awaited_t awaited;
     uint32_t axes, grippers; /* bits: the mechanisms that the running command has */
     wh_vacuum_watch_t watch;
+    size_t kept;            /* the segment's number among those kept, from 1; 0: none */
     wh_track_state_t state; /* how the last segment ended */
     wh_status_t status;     /* not WH_OK: it was given up */
     int32_t refused;        /* the robot, from 1, whose controller ended it; 0: none */
@@ -194,7 +187,7 @@ typedef struct {
     bool is_file;            /* `script` is a file that is run, not a layout */
     bool is_of_hosts;        /* lines come from hosts, not from an operator or a script */
     bool slows_down;         /* a STOP does, unless the layout says otherwise: see ramp.h */
-    bool keeps_segments;     /* collect the played segments, for --segments */
+    bool keeps_segments;     /* collect what goes into the simulator, for --segments: kept.h */
     wh_flow_keep_t keeps;    /* of a flow beside its sums */
     bool without_collisions; /* no collision check, whatever the layout says */
     bool until_steady;       /* a flow by times alone ends as soon as it is steady */
@@ -234,6 +227,7 @@ typedef struct {
     wh_via_point_t via_points[WH_VIA_POINTS]; /* of the segment that is being planned */
     wh_awaited_t awaited;                     /* what the running segment waits for */
     wh_vacuum_watch_t watch;                  /* of the running segment */
+    size_t kept;                              /* its number in `kept`, from 1; 0: none */
     uint32_t axes;                            /* bits: the axes of the running command */
     int callers[WH_MCS_CALLERS];          /* the lines that called the running command's line; 0: no more */
     char module[WH_SANDBOX_MODULE_BYTES]; /* the place in a module where that line led; empty: none */
@@ -274,15 +268,6 @@ typedef struct {
     wh_origins_t origins;            /* where the grippers' wafers lay */
     wh_mcs_valve_t valves[WH_GRIPPERS];
 } wh_mcs_heard_t;
-
-/* The played segments and faults, if wanted. */
-typedef struct {
-    wh_kept_segment_t *segments;
-    size_t segment_count, segment_capacity;
-    wh_played_fault_t *faults;
-    size_t fault_count, fault_capacity;
-    const char *unplayed; /* a command that segments do not contain, a constant text; null: none */
-} wh_mcs_kept_t;
 
 typedef struct {
     struct {

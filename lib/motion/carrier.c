@@ -19,7 +19,7 @@ static void from_chain(const wh_carrier_t *carrier, const wh_real_t q[WH_CHAIN_A
     }
 }
 
-static wh_status_t check_travel(const wh_carrier_t *carrier, const wh_real_t axes[]) {
+wh_status_t wh_carrier_check_travel(const wh_carrier_t *carrier, const wh_real_t axes[]) {
     wh_real_t q[WH_CHAIN_AXES];
     to_chain(carrier, axes, q);
     const wh_status_t status = wh_chain_check_travel(&carrier->chain, q);
@@ -30,14 +30,15 @@ static wh_status_t check_travel(const wh_carrier_t *carrier, const wh_real_t axe
     return wh_chain_check_travel(&carrier->second->chain, q);
 }
 
-static void forward(const wh_carrier_t *carrier, const wh_real_t axes[], wh_pose_t *base_from_effector) {
+void wh_carrier_forward(const wh_carrier_t *carrier, const wh_real_t axes[], wh_pose_t *base_from_effector) {
     wh_real_t q[WH_CHAIN_AXES];
     to_chain(carrier, axes, q);
     wh_chain_forward(&carrier->chain, q, base_from_effector);
 }
 
-static wh_status_t inverse(const wh_carrier_t *carrier, const wh_pose_t *base_from_effector,
-                           const wh_chain_choice_t *choice, const wh_real_t near_axes[], wh_real_t axes[]) {
+wh_status_t wh_carrier_inverse(const wh_carrier_t *carrier, const wh_pose_t *base_from_effector,
+                               const wh_chain_choice_t *choice, const wh_real_t near_axes[],
+                               wh_real_t axes[]) {
     wh_real_t q[WH_CHAIN_AXES];
     to_chain(carrier, near_axes, q);
     const wh_status_t status = wh_chain_inverse(&carrier->chain, base_from_effector, choice, q, q);
@@ -50,14 +51,15 @@ static wh_status_t inverse(const wh_carrier_t *carrier, const wh_pose_t *base_fr
     return status;
 }
 
-static wh_status_t plan_line(const wh_carrier_t *carrier, wh_chain_line_t *line, const wh_real_t from[],
-                             const wh_vec3_t *travel, const wh_line_caps_t *caps) {
+wh_status_t wh_carrier_plan_line(const wh_carrier_t *carrier, wh_chain_line_t *line, const wh_real_t from[],
+                                 const wh_vec3_t *travel, const wh_line_caps_t *caps) {
     wh_real_t q[WH_CHAIN_AXES];
     to_chain(carrier, from, q);
     return wh_chain_line_plan(line, &carrier->chain, q, travel, caps);
 }
 
-static void line_at(const wh_carrier_t *carrier, const wh_chain_line_t *line, wh_real_t t, wh_real_t axes[]) {
+void wh_carrier_line_at(const wh_carrier_t *carrier, const wh_chain_line_t *line, wh_real_t t,
+                        wh_real_t axes[]) {
     wh_real_t q[WH_CHAIN_AXES];
     wh_chain_line_at(line, t, q);
     from_chain(carrier, q, axes);
@@ -86,11 +88,11 @@ wh_status_t wh_carrier_init(wh_carrier_t *carrier, const wh_chain_t *chain) {
     if (status != WH_OK) {
         return status;
     }
-    static const wh_carrier_t calls = {.check_travel = check_travel,
-                                       .forward = forward,
-                                       .inverse = inverse,
-                                       .plan_line = plan_line,
-                                       .line_at = line_at};
+    static const wh_carrier_t calls = {.check_travel = wh_carrier_check_travel,
+                                       .forward = wh_carrier_forward,
+                                       .inverse = wh_carrier_inverse,
+                                       .plan_line = wh_carrier_plan_line,
+                                       .line_at = wh_carrier_line_at};
     *carrier = calls;
     carrier->chain = *chain;
     list_axes(carrier);

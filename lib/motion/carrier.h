@@ -66,6 +66,25 @@ static inline const wh_chain_t *wh_carrier_axis(const wh_carrier_t *carrier, siz
     return &arm->chain;
 }
 
+/* A carrier's calls, for one that is written as a constant: see WH_CARRIER_CALLS. */
+wh_status_t wh_carrier_check_travel(const wh_carrier_t *carrier, const wh_real_t axes[])
+    WH_SYMBOL(wh_carrier_check_travel);
+void wh_carrier_forward(const wh_carrier_t *carrier, const wh_real_t axes[], wh_pose_t *base_from_effector)
+    WH_SYMBOL(wh_carrier_forward);
+wh_status_t wh_carrier_inverse(const wh_carrier_t *carrier, const wh_pose_t *base_from_effector,
+                               const wh_chain_choice_t *choice, const wh_real_t near_axes[], wh_real_t axes[])
+    WH_SYMBOL(wh_carrier_inverse);
+wh_status_t wh_carrier_plan_line(const wh_carrier_t *carrier, wh_chain_line_t *line, const wh_real_t from[],
+                                 const wh_vec3_t *travel, const wh_line_caps_t *caps)
+    WH_SYMBOL(wh_carrier_plan_line);
+void wh_carrier_line_at(const wh_carrier_t *carrier, const wh_chain_line_t *line, wh_real_t t,
+                        wh_real_t axes[]) WH_SYMBOL(wh_carrier_line_at);
+
+/* The last members of a constant carrier, whose other members have the values that wh_carrier_init and
+ * wh_carrier_add gave one like it (`waferhand run --segments` writes such). Nothing checks them. */
+#define WH_CARRIER_CALLS                                                                                     \
+    wh_carrier_check_travel, wh_carrier_forward, wh_carrier_inverse, wh_carrier_plan_line, wh_carrier_line_at
+
 /* The choices that a pose leaves open, as they are at these axes: rail, flip, and the side of the elbow. */
 static inline wh_chain_choice_t wh_carrier_choice(const wh_carrier_t *carrier, const wh_real_t axes[]) {
     wh_chain_choice_t choice = {0, 0, WH_ELBOW_NEAR};

@@ -1,7 +1,6 @@
 /* The simulator: its refusals, the contents of a state, and that the cell judges. */
 #include "support/pose.h"
 
-#include "sim/played.h"
 #include "sim/simulator.h"
 
 enum { WAFERS = 2, GRIPPERS = 2, OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
@@ -444,134 +443,6 @@ static void the_link_is_the_simulator(void **state) {
     assert_int_equal(link->missed(link), 0); /* a call is never late */
 }
 
-/* Zeroed, and after each refusal of wh_player_init, whatever its memory held before. */
-static void a_player_without_a_run_plays_nothing(void **state) {
-    (void)state;
-    static wh_player_t player;
-    static wh_played_t run;
-    const wh_grasp_storage_t storage = storage_here();
-    assert_false(wh_player_next(&player));
-    assert_int_equal(player.status, WH_STATUS_NOT_INITIALISED);
-    memset(&player, 0xa5, sizeof player);
-    assert_false(wh_player_next(&player));
-    for (int missing = 0; missing < 3; ++missing) {
-        memset(&player, 0, sizeof player);
-        assert_int_equal(wh_player_init(&player, missing == 0 ? NULL : &run, missing == 1 ? NULL : &storage),
-                         WH_STATUS_NULL_ARGUMENT);
-        assert_int_equal(player.status, WH_STATUS_NULL_ARGUMENT);
-        assert_false(wh_player_next(&player));
-        assert_int_equal(player.status, WH_STATUS_NULL_ARGUMENT);
-    }
-    assert_int_equal(wh_player_init(NULL, &run, &storage), WH_STATUS_NULL_ARGUMENT);
-}
-
-/* A run with every array that a player reads: a dwell of 20 slices. */
-static wh_machine_t machine;
-static const wh_played_segment_t segments[1] = {{{.kind = WH_SEGMENT_DWELL, .seconds = WH_REAL(0.02)}, 0}};
-static wh_played_fault_t brought[6];
-static const wh_pose_t starts[WAFERS] = {{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {700, 0, 900}},
-                                         {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {-700, 0, 900}}};
-
-static wh_played_t run_here(size_t fault_count) {
-    wh_robot_default(&machine.robot);
-    machine.chuck_limits = machine.robot.limits[3];
-    machine.axis_count = 4;
-    machine.gripper_count = GRIPPERS;
-    for (int g = 0; g < GRIPPERS; ++g) {
-        machine.mounts[g].axis = WH_NONE;
-        machine.mounts[g].base_from_station = wh_pose_identity();
-        machine.mounts[g].effector_from_gripper = wh_pose_identity();
-    }
-    for (int i = 0; i < 6; ++i) {
-        brought[i].seq = 3 + i / WH_COMMAND_FAULTS;
-        brought[i].request.index = i;
-        brought[i].request.fault = wh_fault_make(WH_FAULT_SENSOR_ON, 0, 0, 1, WH_FAULT_FOREVER);
-    }
-    const wh_played_t run = {.machine = &machine,
-                             .segments = segments,
-                             .segment_count = 1,
-                             .faults = brought,
-                             .fault_count = fault_count,
-                             .wafers = starts,
-                             .wafer_count = WAFERS,
-                             .slice_us = 1000,
-                             .config = wh_grasp_config_default(),
-                             .physics = wh_physics_default(),
-                             .cell = cell_here()};
-    return run;
-}
-
-static wh_status_t play(const wh_played_t *run) {
-    static wh_player_t player;
-    const wh_grasp_storage_t storage = storage_here();
-    const wh_status_t status = wh_player_init(&player, run, &storage);
-    int slices = 0;
-    int armed = 0;
-    while (wh_player_next(&player)) {
-        ++slices;
-        for (size_t i = 0; i < player.state.event_count; ++i) {
-            armed += player.state.events[i].kind == WH_EVENT_FAULT_ARMED ? 1 : 0;
-        }
-    }
-    assert_int_equal(player.status, status);
-    assert_int_equal(slices, status == WH_OK ? 20 * (int)run->segment_count : 0);
-    assert_int_equal(armed, status == WH_OK && slices > 0 ? (int)run->fault_count : 0);
-    return status;
-}
-
-static void a_run_that_lacks_an_array_is_refused(void **state) {
-    (void)state;
-    wh_played_t run = run_here(3);
-    assert_int_equal(play(&run), WH_OK);
-    run.segments = NULL;
-    assert_int_equal(play(&run), WH_STATUS_NULL_ARGUMENT);
-    run.segment_count = 0;
-    assert_int_equal(play(&run), WH_OK);
-    run = run_here(3);
-    run.faults = NULL;
-    assert_int_equal(play(&run), WH_STATUS_NULL_ARGUMENT);
-    run.fault_count = 0;
-    assert_int_equal(play(&run), WH_OK);
-    run = run_here(3);
-    run.wafers = NULL;
-    assert_int_equal(play(&run), WH_STATUS_NULL_ARGUMENT);
-}
-
-static void a_runs_two_slice_lengths_agree(void **state) {
-    (void)state;
-    const double bad[] = {0.002, 0.0010001, 0.000999, 0, -0.001, (double)NAN, (double)INFINITY};
-    wh_played_t run = run_here(0);
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
-        run.physics.slice_s = (wh_real_t)bad[i];
-        assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
-    }
-    const wh_grasp_storage_t storage = storage_here();
-    static wh_player_t player;
-    for (int64_t us = 1; us <= 1000000; us += (us < 5000 ? 1 : 997) * WH_TEST_SHARE) {
-        run.slice_us = us;
-        run.physics.slice_s = (wh_real_t)us / WH_REAL(1e6);
-        assert_int_equal(wh_player_init(&player, &run, &storage), WH_OK);
-    }
-}
-
-static void a_runs_faults_are_in_order(void **state) {
-    (void)state;
-    wh_played_t run = run_here(6); /* 4 of slice 3, 2 of slice 4 */
-    assert_int_equal(play(&run), WH_OK);
-    brought[4].seq = 3;
-    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
-    (void)run_here(6);
-    brought[5].seq = 3;
-    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
-    (void)run_here(6);
-    brought[0].seq = 0;
-    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
-    brought[0].seq = 10;
-    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
-    run.fault_count = 1;
-    assert_int_equal(play(&run), WH_OK);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(init_refuses_what_it_cannot_use, set_up),
@@ -589,15 +460,11 @@ int main(void) {
         cmocka_unit_test_setup(null_pointers_touch_nothing, set_up),
         cmocka_unit_test_setup(entries_beyond_the_count_are_not_looked_at, set_up),
         cmocka_unit_test_setup(the_link_is_the_simulator, set_up),
-        cmocka_unit_test_setup(a_player_without_a_run_plays_nothing, set_up),
         cmocka_unit_test_setup(a_wafer_hangs_on_pads_that_carry_its_weight, set_up),
         cmocka_unit_test_setup(grips_are_refused_that_the_simulator_does_not_take, set_up),
         cmocka_unit_test_setup(passive_pads_lift_a_wafer_whatever_their_valve_does, set_up),
         cmocka_unit_test_setup(on_passive_pads_a_wafer_slips_beyond_friction_without_pads_in_the_cell,
                                set_up),
-        cmocka_unit_test_setup(a_run_that_lacks_an_array_is_refused, set_up),
-        cmocka_unit_test_setup(a_runs_two_slice_lengths_agree, set_up),
-        cmocka_unit_test_setup(a_runs_faults_are_in_order, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
