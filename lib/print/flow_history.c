@@ -159,7 +159,8 @@ static void mark_downs(lines_t *lines) {
     }
     for (size_t i = 0; i < plan->down_count; ++i) {
         const wh_flow_down_t *down = &plan->downs[i];
-        if (down->at_us <= figures->end_us && down->for_us > figures->end_us - down->at_us) {
+        if (down->robot == WH_FLOW_NONE && down->at_us <= figures->end_us &&
+            down->for_us > figures->end_us - down->at_us) {
             mark_down(lines, modules, down->station, down->at_us, WH_FLOW_NEVER);
         }
     }

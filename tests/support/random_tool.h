@@ -258,7 +258,7 @@ static inline void random_downs(random_tool_t *random) {
         at_us += random_us(random, 5, 200);
         plan->downs[plan->down_count++] =
             (wh_flow_down_t){2 + (int32_t)wh_test_below(inner), at_us,
-                             random_in(3) ? WH_FLOW_FOR_EVER : random_us(random, 10, 200)};
+                             random_in(3) ? WH_FLOW_FOR_EVER : random_us(random, 10, 200), WH_FLOW_NONE};
     }
 }
 
