@@ -8,17 +8,21 @@ static bool does_count(const wh_record_t *record, const wh_put_record_t *put) {
     return record->layout->stations[put->station].counts;
 }
 
+/* For each wafer: 1 + the last cycle in which a put counted that is no row any more; 0 without one. */
+static size_t *counted_before(const wh_record_t *record) {
+    const size_t wafers = record->layout ? record->layout->wafer_count : 0;
+    size_t *counted = wh_array_new(wafers, sizeof *counted);
+    for (size_t w = 0; record->dropped.puts_of && w < wafers; ++w) {
+        counted[w] = record->dropped.puts_of[w].cycle;
+    }
+    return counted;
+}
+
 size_t *wh_throughput_cycle_wafers(const wh_record_t *record) {
-    size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers);
-    /* For each wafer: 1 + the last cycle in which it counted. */
-    const size_t wafer_count = record->layout ? record->layout->wafer_count : 0;
-    size_t *counted = wh_array_new(wafer_count, sizeof *counted);
+    size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers), *counted = counted_before(record);
     size_t after = 0; /* the number of cycles that have begun */
     for (size_t i = 0; i < record->cycle_count; ++i) {
         wafers[i] = record->cycles[i].wafers;
-    }
-    for (size_t w = 0; record->dropped.puts_of && w < wafer_count; ++w) {
-        counted[w] = record->dropped.puts_of[w].cycle;
     }
     for (size_t i = 0; i < record->put_count; ++i) {
         const wh_put_record_t *put = &record->puts[i];

@@ -120,9 +120,22 @@ static void time_counted(const char *row, const char *full, double goal) {
     bench_figure(row, "x the full run", &spread, false, goal);
 }
 
+/* The number behind "refs:" in valgrind's line, which has commas in it; 0 without one. */
+static double count_in(const char *line) {
+    char digits[40];
+    size_t length = 0;
+    for (const char *c = strstr(line, "refs:"); c && *c && length + 1 < sizeof digits; ++c) {
+        if (*c >= '0' && *c <= '9') {
+            digits[length++] = *c;
+        }
+    }
+    digits[length] = '\0';
+    return strtod(digits, NULL);
+}
+
 /* All instructions of a run, as valgrind counts them. */
 static double count_run(const char *run) {
-    char command[300], line[400], digits[40];
+    char command[300], line[400];
     double count = 0;
     (void)snprintf(command, sizeof command,
                    "valgrind --tool=callgrind --callgrind-out-file=/dev/null build/waferhand run %s 2>&1 "
@@ -130,14 +143,7 @@ static double count_run(const char *run) {
                    run);
     FILE *answer = popen(command, "r");
     while (answer && fgets(line, sizeof line, answer)) {
-        size_t length = 0;
-        for (const char *c = strstr(line, "refs:"); c && *c && length + 1 < sizeof digits; ++c) {
-            if (*c >= '0' && *c <= '9') {
-                digits[length++] = *c;
-            }
-        }
-        digits[length] = '\0';
-        count = strtod(digits, NULL);
+        count = count_in(line);
     }
     if (!answer || pclose(answer) != 0 || !(count > 0)) {
         bench_differ(run, "a count of instructions");

@@ -7,7 +7,7 @@
 #include "bench.h"
 
 struct Bench : testing::Test {
-    void SetUp() override {
+    Bench() {
         BENCH_CHECK(bench_set_up() == 0);
     }
 };

@@ -91,6 +91,11 @@ static void only_a_wafers_fault_has_an_offset(void **state) {
     refuse_fault(&nan, WH_STATUS_OUT_OF_RANGE);
 }
 
+static bool is_of_no_gripper(wh_fault_kind_t kind) {
+    return wh_fault_is_of_wafer(kind) || wh_fault_is_of_door(kind) || wh_fault_is_of_beam(kind) ||
+           wh_fault_is_of_station(kind) || wh_fault_is_of_controller(kind) || kind == WH_FAULT_COMMAND_LOST;
+}
+
 /* Faults as they are made, or with the one more field that their kind needs: a cell accepts them
  * and they act. */
 static void faults_are_made_ready_to_be_taken(void **state) {
@@ -106,11 +111,8 @@ static void faults_are_made_ready_to_be_taken(void **state) {
         step(880, CLOSED);
         assert_int_equal(answer.event_count, 0);
         step(880, CLOSED);
-        const bool of_none = wh_fault_is_of_wafer(kind) || wh_fault_is_of_door(kind) ||
-                             wh_fault_is_of_beam(kind) || wh_fault_is_of_station(kind) ||
-                             wh_fault_is_of_controller(kind) || kind == WH_FAULT_COMMAND_LOST;
-        expect_event(WH_EVENT_FAULT_ARMED, wh_fault_is_of_wafer(kind) ? 0 : WH_NONE, of_none ? WH_NONE : 0,
-                     3);
+        expect_event(WH_EVENT_FAULT_ARMED, wh_fault_is_of_wafer(kind) ? 0 : WH_NONE,
+                     is_of_no_gripper(kind) ? WH_NONE : 0, 3);
         assert_true(kind != WH_FAULT_WAFER_MISSING || wafers[0].base_from_wafer.r.z == WH_REAL(900 - 1e5));
         step(880, CLOSED);
         step(880, CLOSED);
