@@ -57,13 +57,12 @@ typedef struct {
     wh_flow_side_t side, pump_to;
     bool is_listed; /* a lock that lists turn */
     int32_t wafers;
-    int32_t accesses; /* picks, places and swaps that have ended */
-    int32_t turned;   /* turns of its own list that have begun */
-    bool acts;        /* it is a lock, or cleaned by itself */
-    bool has_due;     /* one of its places must be cleaned, and is not yet */
-    bool is_aside;    /* as the last instant ended it was cleaned, pumped or had failed */
-    int64_t
-        next_us; /* as the last instant ended: when something of it ends next; of a failure for ever, never */
+    int32_t accesses;              /* picks, places and swaps that have ended */
+    int32_t turned;                /* turns of its own list that have begun */
+    bool acts;                     /* it is a lock, or cleaned by itself */
+    bool has_due;                  /* one of its places must be cleaned, and is not yet */
+    bool is_aside;                 /* as the last instant ended it was cleaned, pumped or had failed */
+    int64_t next_us;               /* as the last instant ended: when something of it ends next, or never */
     int32_t call;                  /* the number, from 1, of the carrier's call that goes on; 0: none does */
     int64_t change_us, changed_us; /* a full carrier is changed for an empty one: since when, until when, or
                                     * WH_FLOW_NEVER */

@@ -40,7 +40,8 @@ typedef struct {
 /* Takes all changes, or none: then `reason` says why. A motion that the robot may no longer make ends after
  * the present slice. Values by name: power on, off; brakes released, set; estop off, on; servo ok, error;
  * mode automatic, manual, remote; exceeded an axis or none, with at, its place in degrees or mm, beyond its
- * soft limit; override 0.001 to 1. The power goes off with the emergency stop, and comes on only without it. */
+ * soft limit; override 0.001 to 1. The power goes off with the emergency stop, and comes on only without
+ * it. */
 wh_status_t wh_mcs_change_controller(struct wh_mcs *mcs, size_t robot, const wh_mcs_change_t changes[],
                                      size_t count, char reason[WH_MCS_CHANGE_BYTES]);
 

@@ -29,11 +29,11 @@ static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
 }
 
 void wh_mcs_stop_lane(wh_mcs_t *mcs, wh_lane_t *lane, wh_status_t after) {
-    lane->after = after;
-    if (lane->ramp.is_on) {
+    lane->stop.after = after;
+    if (lane->stop.ramp.is_on) {
         return;
     }
-    if (lane->is_busy && !lane->is_held && wh_mcs_begin_ramp(mcs, &lane->ramp, &lane->track)) {
+    if (lane->is_busy && !lane->is_held && wh_mcs_begin_ramp(mcs, &lane->stop.ramp, &lane->track)) {
         return;
     }
     lane->told = after;
@@ -43,13 +43,13 @@ void wh_mcs_stop_lane(wh_mcs_t *mcs, wh_lane_t *lane, wh_status_t after) {
 
 /* The next slice of a segment that was stopped and slows down. False: it stands, and has ended. */
 static bool draw_stopped(wh_mcs_t *mcs, wh_lane_t *lane) {
-    lane->is_drawn = wh_ramp_next(&lane->ramp, &lane->track);
+    lane->is_drawn = wh_ramp_next(&lane->stop.ramp, &lane->track);
     if (!lane->is_drawn) {
         take_axes(mcs, lane);
-        lane->ramp.is_on = false;
+        lane->stop.ramp.is_on = false;
         lane->is_busy = false;
-        lane->told = lane->after;
-        lane->status = lane->after == WH_OK ? WH_STATUS_STOPPED : WH_OK;
+        lane->told = lane->stop.after;
+        lane->status = lane->stop.after == WH_OK ? WH_STATUS_STOPPED : WH_OK;
     }
     return lane->is_drawn;
 }
@@ -63,7 +63,7 @@ static bool draw_lanes(wh_mcs_t *mcs) {
         if (!lane->is_busy || lane->is_drawn || lane->is_held) {
             continue;
         }
-        if (lane->ramp.is_on) {
+        if (lane->stop.ramp.is_on) {
             is_any_over = !draw_stopped(mcs, lane) || is_any_over;
             continue;
         }
@@ -146,7 +146,7 @@ static void give_up_segments(wh_mcs_t *mcs, uint32_t axes, wh_status_t status, b
                 continue;
             }
             lane->status = status;
-            lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
+            lane->is_busy = lane->is_drawn = lane->stop.ramp.is_on = false;
         }
     }
 }
@@ -160,7 +160,7 @@ static void give_up_refused(wh_mcs_t *mcs) {
             wh_lane_t *lane = &mcs->lanes->of[i];
             if (lane->is_busy && (lane->axes & axes) != 0) {
                 lane->refused = (int32_t)robot + 1;
-                lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
+                lane->is_busy = lane->is_drawn = lane->stop.ramp.is_on = false;
             }
         }
     }
@@ -400,7 +400,7 @@ static int push_outcome(lua_State *L) {
 /* native.drop_segment(): stops this task's segment. */
 static int drop_segment(lua_State *L) {
     wh_lane_t *lane = current_lane(wh_mcs_with_layout(L));
-    lane->is_busy = lane->is_drawn = lane->ramp.is_on = false;
+    lane->is_busy = lane->is_drawn = lane->stop.ramp.is_on = false;
     return 0;
 }
 

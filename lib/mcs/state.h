@@ -99,6 +99,12 @@ typedef struct {
 #define WH_MCS_TASKS 64
 #define WH_MCS_LANES (1 + WH_MCS_TASKS)
 
+/* A lane whose segment was stopped. */
+typedef struct {
+    wh_ramp_t ramp;    /* the segment slows down by it; then it ends with */
+    wh_status_t after; /* this for its job, for the lane's told_why; WH_OK: with STOPPED */
+} wh_lane_stop_t;
+
 /* A task's segment, and the data of its command that motion control keeps while others go on. */
 typedef struct {
     bool is_busy;     /* a segment runs */
@@ -112,12 +118,11 @@ typedef struct {
     wh_status_t status;     /* not WH_OK: it was given up */
     int32_t refused;        /* the robot, from 1, whose controller ended it; 0: none */
     wh_task_t task;
-    int32_t job;          /* the job whose lines the task plays; 0: none */
-    bool waits;           /* its command waits for something that another one has */
-    bool is_patient;      /* it waits without a limit */
-    bool is_held;         /* its segment stands still for now */
-    wh_ramp_t ramp;       /* its segment was stopped and slows down; then it ends with */
-    wh_status_t after;    /* this for its job, for the reason told_why; WH_OK: with STOPPED */
+    int32_t job;     /* the job whose lines the task plays; 0: none */
+    bool waits;      /* its command waits for something that another one has */
+    bool is_patient; /* it waits without a limit */
+    bool is_held;    /* its segment stands still for now */
+    wh_lane_stop_t stop;
     wh_status_t told;     /* not WH_OK: the job, or the waiting command, must end with this, */
     const char *told_why; /* for this reason, a constant text */
     /* While another task goes on: */

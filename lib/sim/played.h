@@ -37,8 +37,8 @@
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(played);
 
-/* The kinds of rows. A motion is a row of its kind, the rows that go on with its values, one that slows it, and
- * its via points. Targets are in the order of the axes in `bits`, rad and mm. */
+/* The kinds of rows. A motion is a row of its kind, the rows that go on with its values, one that slows
+ * it, and its via points. Targets are in the order of the axes in `bits`, rad and mm. */
 typedef enum WH_FOUR_BYTES {
     WH_PLAYED_AXES,   /* a target for each axis: WH_SEGMENT_AXES */
     WH_PLAYED_LINE,   /* travel x, y, z, speed, acceleration: WH_SEGMENT_LINE */

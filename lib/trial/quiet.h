@@ -44,14 +44,14 @@ typedef struct {
 
 /* The number of next slices in which nothing can happen but motion, if they have the valves of `last`, the
  * command of the last slice, and no orders, and segments move these axes alone. 0: something may happen in
- * the next one; INT64_MAX: nothing ever. `stroke` is asked where a gripper goes up or down; null: nobody knows
- * more than the axes' limits. Cost: about 10 products for each moving gripper and each station and wafer. */
+ * the next one; INT64_MAX: nothing ever. `stroke` is asked where a gripper goes up or down; null: nobody
+ * knows more than the axes' limits. Cost: about 10 products for each moving gripper and each station and wafer. */
 int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
                         uint32_t axes, const wh_quiet_stroke_t *stroke);
 
 /* How far gripper g may go, mm, until something may happen between it and what stands; 0: that may be at
- * once, or of the axes others move it than one that lifts it and `still` ones. `axis` receives that one. Cost: some 50 sums for each
- * wafer, and, with a wafer, for each station. */
+ * once, or other axes move it than one that lifts it and `still` ones. `axis` receives the one that lifts.
+ * Cost: some 50 sums for each wafer, and, with a wafer, for each station. */
 wh_real_t wh_quiet_room(const wh_quiet_t *quiet, const wh_simulator_t *simulator, uint32_t axes,
                         uint32_t still, size_t g, size_t *axis);
 

@@ -1,4 +1,5 @@
-/* How far a gripper may go up or down until something may be decided: by the heights of what it comes to, not by how far that is. */
+/* How far a gripper may go up or down until something may be decided. The heights of what it comes to tell
+ * that, not how far off it is. */
 #include "../grasp/face.h"
 #include "quiet.h"
 
