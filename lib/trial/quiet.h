@@ -45,7 +45,8 @@ typedef struct {
 /* The number of next slices in which nothing can happen but motion, if they have the valves of `last`, the
  * command of the last slice, and no orders, and segments move these axes alone. 0: something may happen in
  * the next one; INT64_MAX: nothing ever. `stroke` is asked where a gripper goes up or down; null: nobody
- * knows more than the axes' limits. Cost: about 10 products for each moving gripper and each station and wafer. */
+ * knows more than the axes' limits. Cost: about 10 products for each moving gripper and each station and
+ * wafer. */
 int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
                         uint32_t axes, const wh_quiet_stroke_t *stroke);
 
