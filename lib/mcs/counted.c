@@ -35,8 +35,8 @@ static int64_t until_segment_ends(const wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
         const int64_t its = lane->stop.ramp.is_on || lane->is_held ? 0
-                            : lane->is_busy                   ? until_end(mcs, &lane->track, &lane->awaited)
-                                                              : INT64_MAX;
+                            : lane->is_busy ? until_end(mcs, &lane->track, &lane->awaited)
+                                            : INT64_MAX;
         slices = its < slices ? its : slices;
     }
     return slices;
