@@ -214,14 +214,14 @@ static bool is_full(const wh_flow_state_t *state, int32_t station) {
 static bool change(wh_flow_state_t *state, int32_t station) {
     wh_flow_station_state_t *at = &state->stations[station];
     const wh_flow_station_t *of = &state->tool->stations[station];
-    if (!wh_flow_is_for_ends(state, station)) {
-        return false;
-    } else if (at->changed_us == WH_FLOW_NEVER && is_full(state, station)) {
+    const bool goes_on = at->changed_us != WH_FLOW_NEVER;
+    if (wh_flow_is_for_ends(state, station) && !goes_on && is_full(state, station)) {
         at->change_us = state->now_us;
         at->changed_us = wh_flow_slice_us(state, state->now_us + of->goes_us + of->comes_us);
         ++state->changes;
         return true;
-    } else if (at->changed_us > state->now_us) {
+    }
+    if (!wh_flow_is_for_ends(state, station) || at->changed_us > state->now_us) {
         return false;
     }
     take_wafers(state, station);

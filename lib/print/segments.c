@@ -27,7 +27,7 @@ static void name_prefix(wh_segments_writer_t *writer, const char *path) {
     size_t length = is_letter(from[0]) ? 0 : (size_t)snprintf(prefix, WH_SEGMENTS_PREFIX, "run_");
     for (; *from != '\0' && *from != '.' && length + 1 < WH_SEGMENTS_PREFIX; ++from) {
         if (is_word(*from) || prefix[length - 1] != '_') {
-            prefix[length++] = is_word(*from) ? *from : '_';
+            prefix[length++] = (char)(is_word(*from) ? *from : '_');
         }
     }
     while (prefix[length - 1] == '_') {

@@ -26,6 +26,7 @@ typedef struct {
     wh_played_t run;
     wh_played_row_t *rows;
     wh_segments_origin_t *origins; /* by row */
+    wh_pose_t *wafers;             /* where they lie first */
     size_t row_count, row_capacity, origin_capacity;
     const wh_record_t *record;
     const wh_layout_t *layout;

@@ -203,6 +203,7 @@ static wh_pose_t *copy_places(const wh_layout_t *layout) {
 
 static void fill_run(wh_segments_t *segments, const wh_mcs_kept_t *kept) {
     const wh_layout_t *layout = segments->layout;
+    segments->wafers = copy_places(layout);
     const wh_played_t run = {.machine = &layout->machine,
                              .rows = segments->rows,
                              .row_count = segments->row_count,
@@ -211,7 +212,7 @@ static void fill_run(wh_segments_t *segments, const wh_mcs_kept_t *kept) {
                              .fault_count = kept->fault_count,
                              .orders = kept->orders,
                              .order_count = kept->order_count,
-                             .wafers = copy_places(layout),
+                             .wafers = segments->wafers,
                              .wafer_count = layout->wafer_count,
                              .slice_us = layout->slice_us,
                              .config = layout->grasp,
@@ -281,6 +282,6 @@ const char *wh_segments_make(wh_segments_t *segments, const wh_mcs_t *mcs, const
 void wh_segments_free(wh_segments_t *segments) {
     free(segments->rows);
     free(segments->origins);
-    free((void *)(uintptr_t)segments->run.wafers);
+    free(segments->wafers);
     *segments = (wh_segments_t){0};
 }

@@ -90,7 +90,7 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
         door->close_us = wh_layout_read_us(reader, "close");
         wh_reader_leave(reader);
     } else if (type != LUA_TNIL) {
-        door->open_us = door->close_us = wh_timed_read_us(reader, "door", NAN);
+        door->open_us = door->close_us = wh_timed_read_us(reader, "door", (double)NAN);
     }
 }
 

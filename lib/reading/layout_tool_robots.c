@@ -13,7 +13,7 @@ static void read_own_times(wh_reader_t *reader, const wh_flow_tool_t *tool, int3
     for (size_t s = 0; s < tool->station_count; ++s) {
         const bool is_needed = !has_usual && tool->serves[wh_flow_of(tool, robot, (int32_t)s)];
         if (is_needed || wh_reader_has(reader, tool->stations[s].name)) {
-            own_us[s] = wh_timed_read_us(reader, tool->stations[s].name, NAN);
+            own_us[s] = wh_timed_read_us(reader, tool->stations[s].name, (double)NAN);
         }
     }
     size_t count = 0;
@@ -53,7 +53,7 @@ static void read_pair(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, 
     }
     const size_t a = (size_t)wh_timed_find_station(reader, tool, pair, from),
                  b = (size_t)wh_timed_find_station(reader, tool, pair, to);
-    const int64_t us = wh_timed_read_us(reader, pair, NAN);
+    const int64_t us = wh_timed_read_us(reader, pair, (double)NAN);
     tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] = us;
     (void)snprintf(back, sizeof back, "%s>%s", to, from);
     if (!wh_reader_has(reader, back)) {
@@ -71,13 +71,13 @@ static void fill_moves(wh_flow_tool_t *tool, int32_t robot, int64_t us) {
 static int64_t read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
     if (wh_reader_push(reader, "move") != LUA_TTABLE) {
         lua_pop(reader->L, 1);
-        const int64_t us = wh_timed_read_us(reader, "move", NAN);
+        const int64_t us = wh_timed_read_us(reader, "move", (double)NAN);
         fill_moves(tool, robot, us);
         return us;
     }
     lua_pop(reader->L, 1);
     (void)wh_reader_enter(reader, "move");
-    const int64_t usual_us = wh_timed_read_us(reader, "default", NAN);
+    const int64_t usual_us = wh_timed_read_us(reader, "default", (double)NAN);
     fill_moves(tool, robot, usual_us);
     size_t count = 0;
     const wh_timed_name_t *pairs = wh_timed_read_names(reader, "pairs of stations", &count);
@@ -134,8 +134,8 @@ void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robo
     wh_reader_refuse_unknown(reader, wh_layout_timed_robot_fields);
     tool->robots[robot].arms = (int32_t)wh_reader_apart(reader, "arms");
     read_stand(reader, tool, robot);
-    read_times(reader, tool, robot, "pick", NAN, tool->pick_us);
-    read_times(reader, tool, robot, "place", NAN, tool->place_us);
+    read_times(reader, tool, robot, "pick", (double)NAN, tool->pick_us);
+    read_times(reader, tool, robot, "place", (double)NAN, tool->place_us);
     int64_t usual_us = WH_FLOW_NONE;
     if (wh_reader_has(reader, "speed")) {
         if (wh_reader_has(reader, "move")) {
@@ -146,7 +146,7 @@ void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robo
         usual_us = read_moves(reader, tool, robot);
     }
     if (wh_reader_has(reader, "swap")) {
-        read_times(reader, tool, robot, "swap", NAN, tool->swap_us);
+        read_times(reader, tool, robot, "swap", (double)NAN, tool->swap_us);
     } else {
         fill_swaps(reader, tool, robot, usual_us);
     }

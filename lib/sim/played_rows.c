@@ -3,7 +3,10 @@
 
 /* A row that begins something does so within the run, not before the one before it. */
 static bool is_in_time(const wh_played_t *run, const wh_played_row_t *row, int64_t after) {
-    const int64_t least = row->kind < WH_PLAYED_VALVES ? 1 : 0;
+    int64_t least = 0;
+    if (row->kind < WH_PLAYED_VALVES) {
+        least = 1;
+    }
     return row->after >= after && row->after < run->slices && row->slices >= least &&
            row->slices <= run->slices - row->after;
 }
@@ -132,7 +135,7 @@ static bool read_rest(values_t *values, uint32_t bits, wh_played_plan_t *plan) {
 wh_status_t wh_played_read(const wh_played_t *run, const wh_track_t *track, size_t *row,
                            wh_played_plan_t *plan) {
     const wh_played_row_t *first = &run->rows[*row];
-    values_t values = {first, run->rows + run->row_count, 0, false};
+    values_t values = {first, &run->rows[run->row_count], 0, false};
     const size_t axes = run->machine->axis_count;
     const uint32_t all = UINT32_MAX >> (32U - (uint32_t)axes);
     plan->segment = wh_track_blank(track);

@@ -272,9 +272,11 @@ static int64_t until_near(const mover_t *mover) {
 static int64_t until_stroke_ends(const mover_t *mover, const wh_quiet_stroke_t *stroke) {
     mover_t own = *mover;
     size_t axis = WH_AXES;
+    if (!stroke) {
+        return 0;
+    }
     const wh_real_t room =
-        stroke ? wh_quiet_room(mover->quiet, mover->simulator, mover->axes, stroke->still, mover->g, &axis)
-               : 0;
+        wh_quiet_room(mover->quiet, mover->simulator, mover->axes, stroke->still, mover->g, &axis);
     own.is_stroke = true;
     const int64_t slices = room > 0 ? until_near(&own) : 0;
     return slices > 0 ? least_of(slices, stroke->within(stroke->user, axis, room)) : 0;
