@@ -164,6 +164,7 @@ static void tell_of_events(void) {
 
 /* A client comes and goes, and a tester says something. */
 static void call_hooks(void) {
+    static wh_lines_t lines;
     wh_failure_t failure;
     bool stops = false;
     if (wh_dialect_welcome(&dialect, &client)) {
