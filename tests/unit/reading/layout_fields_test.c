@@ -126,11 +126,15 @@ static void expect_choices(const char *type, const char *expected, bool may_be_m
 static void expect_type(const wh_reader_field_t *field, const char *expected) {
     char type[200];
     wh_field_type(field, type, sizeof type);
-    static const char *const plain[][2] = {
-        {"number", "a number from "},        {"number|table<string, number>", "a number from "},
-        {"integer", "a whole number from "}, {"table<string, string>", "a table"},
-        {"boolean", "true or false"},        {"string", "text of 1 to "},
-        {"number[]", "a list of t"},         {"integer|integer[]", "a whole number from "}};
+    static const char *const plain[][2] = {{"number", "a number from "},
+                                           {"number|table<string, number>", "a number from "},
+                                           {"integer|table<string, integer>", "a whole number from "},
+                                           {"integer", "a whole number from "},
+                                           {"table<string, string>", "a table"},
+                                           {"boolean", "true or false"},
+                                           {"string", "text of 1 to "},
+                                           {"number[]", "a list of t"},
+                                           {"integer|integer[]", "a whole number from "}};
     const char *wanted = NULL;
     if (type[0] == '"') {
         const bool is_kind_of_fault = strstr(expected, "command_lost") != NULL;
