@@ -68,7 +68,7 @@ static void describe(lua_State *L, char *text, size_t size) {
 }
 
 /* The longest text that describes the expected values. */
-#define WANTED_SIZE 512
+#define WANTED_SIZE 640
 
 __attribute__((noreturn)) static void fail(const wh_reader_t *reader, const char *field, const char *wanted) {
     char value[200];
@@ -439,7 +439,7 @@ int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const
         return fallback;
     }
     const char *value = wh_lua_word(reader->L, -1);
-    char expected[512] = "";
+    char expected[WANTED_SIZE] = "";
     for (int i = 0; choices[i]; ++i) {
         if (strcmp(value, choices[i]) == 0) {
             lua_pop(reader->L, 1);

@@ -71,7 +71,7 @@ static bool is_read(const char *statement) {
     wh_sandbox_renew(sandbox);
     lua_pushcfunction(L, read_here);
     if (!wh_sandbox_evaluate_text(L, "cell.lua", text, (size_t)length, &result)) {
-        fail_msg("%s", result.message);
+        fail_msg("%s: %s", statement, result.message);
     }
     return wh_sandbox_call(L, 1, 1, &result);
 }
@@ -187,7 +187,8 @@ static const char *prepare_body(const char *path) {
         return "cell.faults = { { kind = 'station_stuck', station = 'A' }, { kind = 'station_slow', station "
                "= 'A', value = 2 }, { kind = 'e84_stuck', station = 'LP', step = 'tp1' }, { kind = "
                "'e84_late', "
-               "station = 'LP', step = 'tp5', value = 2 } } ";
+               "station = 'LP', step = 'tp5', value = 2 }, { kind = 'power_lost' }, { kind = "
+               "'emergency_stop' }, { kind = 'servo_error' } } ";
     }
     if (strncmp(path, "wafers[1].rim.flats", strlen("wafers[1].rim.flats")) == 0) {
         return "cell.grippers[4].grip, cell.faults = nil cell.wafers[1].rim.flats = { { at = 0, length = 50 "
