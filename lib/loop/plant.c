@@ -137,7 +137,7 @@ wh_status_t wh_plant_move(wh_plant_t *plant, const wh_real_t q[], uint32_t valve
 
 wh_status_t wh_plant_drive(wh_plant_t *plant, const double axes[], uint32_t valves,
                            char text[WH_PLANT_TEXT]) {
-    wh_real_t q[WH_AXES];
+    wh_real_t q[WH_AXES] = {0};
     for (size_t axis = 0; axis < plant->command.axis_count; ++axis) {
         q[axis] = wh_plant_axis_in(plant->layout, axis, axes[axis]);
     }

@@ -63,7 +63,7 @@ static void numbers_that_no_axis_can_have_are_refused_by_name(void **state) {
     assert_int_equal(wh_plant_step(&plant), WH_OK);
     assert_int_equal(drive(0, 751, 880, 1), WH_STATUS_OUT_OF_REACH);
     assert_non_null(strstr(text, "axis 2, R: 751 mm: "));
-    assert_int_equal(drive(0, 400, NAN, 1), WH_STATUS_NOT_FINITE);
+    assert_int_equal(drive(0, 400, (double)NAN, 1), WH_STATUS_NOT_FINITE);
     assert_non_null(strstr(text, "axis 3, Z: nan mm: "));
     assert_int_equal(wh_plant_step(&plant), WH_OK);
     assert_true(simulation.server.axes[1] == 400 && simulation.server.axes[2] == 880);
