@@ -64,15 +64,7 @@ bool wh_flow_has_called(const wh_flow_state_t *state, size_t lot) {
 /* ------------------------------------------------------------------------------------------------ telling */
 
 static void tell_at(wh_flow_state_t *state, int32_t station, wh_flow_event_kind_t kind, int64_t begin_us) {
-    const wh_flow_event_t event = {.kind = kind,
-                                   .begin_us = begin_us,
-                                   .end_us = state->now_us,
-                                   .robot = WH_FLOW_NONE,
-                                   .wafer = WH_FLOW_NONE,
-                                   .other = WH_FLOW_NONE,
-                                   .place = WH_FLOW_NONE,
-                                   .station = station,
-                                   .from = WH_FLOW_NONE};
+    const wh_flow_event_t event = wh_flow_event_of_station(kind, station, begin_us, state->now_us);
     wh_flow_tell(state, &event);
 }
 

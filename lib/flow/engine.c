@@ -44,15 +44,9 @@ static void end_holds(const wh_flow_state_t *state) {
     for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
         const wh_flow_robot_state_t *robot = &state->robots[r];
         if (robot->held_us > 0 && robot->held_us == state->now_us) {
-            const wh_flow_event_t held = {.kind = WH_FLOW_EVENT_HELD,
-                                          .begin_us = robot->held_began_us,
-                                          .end_us = state->now_us,
-                                          .robot = r,
-                                          .wafer = WH_FLOW_NONE,
-                                          .other = WH_FLOW_NONE,
-                                          .place = WH_FLOW_NONE,
-                                          .station = WH_FLOW_NONE,
-                                          .from = WH_FLOW_NONE};
+            wh_flow_event_t held = wh_flow_event_of_station(WH_FLOW_EVENT_HELD, WH_FLOW_NONE,
+                                                            robot->held_began_us, state->now_us);
+            held.robot = r;
             wh_flow_tell(state, &held);
         }
     }

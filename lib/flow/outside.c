@@ -19,19 +19,6 @@ void wh_flow_tell_worked(wh_flow_state_t *state, int32_t station) {
     state->stations[station].real.has_worked = true;
 }
 
-static wh_flow_event_t event_of(wh_flow_event_kind_t kind, int32_t station, int64_t begin_us,
-                                int64_t end_us) {
-    return (wh_flow_event_t){.kind = kind,
-                             .begin_us = begin_us,
-                             .end_us = end_us,
-                             .robot = WH_FLOW_NONE,
-                             .wafer = WH_FLOW_NONE,
-                             .other = WH_FLOW_NONE,
-                             .place = WH_FLOW_NONE,
-                             .station = station,
-                             .from = WH_FLOW_NONE};
-}
-
 /* ---------------------------------------------------------------------------------------------- estimates */
 
 /* Either way round, as far as nobody has gone the other one. */
@@ -76,7 +63,8 @@ static void end_shutting(wh_flow_state_t *state, int32_t number) {
     wh_flow_station_state_t *station = &state->stations[number];
     const bool is_seen = station->real.closed_us >= station->real.shutting_us;
     const int64_t end_us = is_seen ? station->real.closed_us : state->now_us;
-    wh_flow_event_t shut = event_of(WH_FLOW_EVENT_SHUT, number, station->real.shutting_us, end_us);
+    wh_flow_event_t shut =
+        wh_flow_event_of_station(WH_FLOW_EVENT_SHUT, number, station->real.shutting_us, end_us);
     shut.robot = station->real.shutter;
     station->real.is_shutting = station->real.has_shut = false;
     if (station->real.shutter != WH_FLOW_NONE) {
@@ -224,7 +212,7 @@ bool wh_flow_is_real_busy(const wh_flow_state_t *state) {
 void wh_flow_tell_process(wh_flow_state_t *state, int32_t wafer, int64_t begin_us, int64_t end_us) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
     const int32_t station = wh_flow_station_of(state, wafer);
-    wh_flow_event_t ended = event_of(WH_FLOW_EVENT_PROCESS, station, begin_us, end_us);
+    wh_flow_event_t ended = wh_flow_event_of_station(WH_FLOW_EVENT_PROCESS, station, begin_us, end_us);
     ended.wafer = wafer;
     ended.place = at->place;
     ended.step = at->step;
@@ -235,14 +223,14 @@ void wh_flow_tell_process(wh_flow_state_t *state, int32_t wafer, int64_t begin_u
 void wh_flow_tell_clean(wh_flow_state_t *state, int32_t place, int32_t wafer, int64_t begin_us,
                         int64_t end_us) {
     wh_flow_event_t ended =
-        event_of(WH_FLOW_EVENT_CLEAN, state->tool->place_stations[place], begin_us, end_us);
+        wh_flow_event_of_station(WH_FLOW_EVENT_CLEAN, state->tool->place_stations[place], begin_us, end_us);
     ended.wafer = wafer;
     ended.place = place;
     wh_flow_tell(state, &ended);
 }
 
 void wh_flow_tell_pump(wh_flow_state_t *state, int32_t station, int64_t begin_us, int64_t end_us) {
-    wh_flow_event_t ended = event_of(WH_FLOW_EVENT_PUMP, station, begin_us, end_us);
+    wh_flow_event_t ended = wh_flow_event_of_station(WH_FLOW_EVENT_PUMP, station, begin_us, end_us);
     ended.side = state->stations[station].side;
     wh_flow_tell(state, &ended);
 }
@@ -258,7 +246,7 @@ void wh_flow_tell_left(wh_flow_state_t *state, int32_t wafer, int64_t done_us, i
     }
     const int64_t free_us =
         done_us + state->wafers[wafer].clean_us; /* a stay begins with a clean around it */
-    wh_flow_event_t left = event_of(WH_FLOW_EVENT_LEFT, station, free_us, lifted_us);
+    wh_flow_event_t left = wh_flow_event_of_station(WH_FLOW_EVENT_LEFT, station, free_us, lifted_us);
     left.robot = robot;
     left.wafer = wafer;
     left.place = state->wafers[wafer].place;

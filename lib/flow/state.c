@@ -237,6 +237,19 @@ int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer) {
     return place == WH_FLOW_NONE ? WH_FLOW_NONE : state->tool->place_stations[place];
 }
 
+wh_flow_event_t wh_flow_event_of_station(wh_flow_event_kind_t kind, int32_t station, int64_t begin_us,
+                                         int64_t end_us) {
+    return (wh_flow_event_t){.kind = kind,
+                             .begin_us = begin_us,
+                             .end_us = end_us,
+                             .robot = WH_FLOW_NONE,
+                             .wafer = WH_FLOW_NONE,
+                             .other = WH_FLOW_NONE,
+                             .place = WH_FLOW_NONE,
+                             .station = station,
+                             .from = WH_FLOW_NONE};
+}
+
 void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event) {
     if (state->listener.event) {
         state->listener.event(state->listener.context, state, event);

@@ -303,6 +303,10 @@ static inline int64_t wh_flow_slice_us(const wh_flow_state_t *state, int64_t us)
 /* Tells the plan's own function, if there is one; it may end the flow. */
 void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *problem);
 
+/* An event at a station, or at none: without robot, wafer, place and the station where it began. */
+wh_flow_event_t wh_flow_event_of_station(wh_flow_event_kind_t kind, int32_t station, int64_t begin_us,
+                                         int64_t end_us);
+
 /* Tells the listener, if there is one. */
 void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event);
 
