@@ -108,15 +108,16 @@ LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a li
 MPI := $(firstword $(foreach name,ompi-c ompi,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 RANKS := $(if $(MPI),$(B)/waferhand_mpi.so)
 
-# libmicrohttpd, likewise: without it --page says that it is missing.
-PAGE := $(shell $(PKG_CONFIG) --exists libmicrohttpd 2>/dev/null && echo libmicrohttpd)
+# libmicrohttpd, likewise: without it --page says that it is missing. The program loads it by this name when a page is served.
+PAGE := $(shell $(PKG_CONFIG) --exists libmicrohttpd 2>/dev/null && \
+          readelf -d "$$($(CC) -print-file-name=libmicrohttpd.so)" 2>/dev/null | sed -n 's/.*soname: \[\(.*\)\].*/\1/p')
 
 # liburdfdom is C++; the program links it with the C compiler all the same.
 URDF_LIBS = -Wl,--as-needed $(shell $(PKG_CONFIG) --libs urdfdom tinyxml qhull_r) -lstdc++ -Wl,--no-as-needed
 # LCM's pkg-config file asks for GLib's headers, which LCM's own do not need: hence -llcm. It stands before libwaferhand.a,
 # which it uses.
 COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed
-PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson libedit zlib libzstd $(PAGE)) $(URDF_LIBS) -llcm -ldl -lpthread -lm
+PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson libedit zlib libzstd) $(URDF_LIBS) -llcm -ldl -lpthread -lm
 
 # This file is written only when its text changes. Whatever depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(CPPFLAGS) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
@@ -164,8 +165,9 @@ $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC -fvisibility
 $(COLLISION_SUPPORT): FLAGS = $(COLLISION_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
-$(B)/obj/lib/view/http.o: FLAGS += $(if $(PAGE),-DWH_MICROHTTPD $(call package_flags,$(PAGE)))
-$(B)/obj/lib/view/http.o: $(B)/page
+PAGE_OBJECTS := $(B)/obj/lib/view/http.o $(B)/obj/lib/view/microhttpd.o
+$(PAGE_OBJECTS): FLAGS += $(if $(PAGE),-DWH_MICROHTTPD='"$(PAGE)"' $(call package_flags,libmicrohttpd))
+$(PAGE_OBJECTS): $(B)/page
 # liburdfdom's headers throw.
 $(B)/obj/lib/bodies/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
 # Only Eigen's decompositions: under sanitizers they are twenty times the code.

@@ -3,7 +3,6 @@
 #if defined(WH_MICROHTTPD)
 
 #include <inttypes.h>
-#include <microhttpd.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,12 +13,16 @@
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "listen.h"
+#include "microhttpd.h"
 #include "origin.h"
 
 /* A client that listens hears at least this often: so one that is gone is noticed, us. */
 #define BEAT_US 5000000
 
 static const char beat[] = ": \n\n";
+
+/* Set before a server is opened. */
+static const wh_microhttpd_t *mhd;
 
 /* A connection, from when it was accepted on. */
 typedef struct peer {
@@ -76,12 +79,12 @@ static enum MHD_Result answer(struct MHD_Connection *connection, unsigned status
     if (!response) {
         return MHD_NO;
     }
-    bool good = MHD_add_response_header(response, "Content-Type", type) == MHD_YES;
+    bool good = mhd->MHD_add_response_header(response, "Content-Type", type) == MHD_YES;
     for (size_t i = 0; good && i < sizeof always / sizeof always[0]; ++i) {
-        good = MHD_add_response_header(response, always[i][0], always[i][1]) == MHD_YES;
+        good = mhd->MHD_add_response_header(response, always[i][0], always[i][1]) == MHD_YES;
     }
-    const enum MHD_Result queued = good ? MHD_queue_response(connection, status, response) : MHD_NO;
-    MHD_destroy_response(response);
+    const enum MHD_Result queued = good ? mhd->MHD_queue_response(connection, status, response) : MHD_NO;
+    mhd->MHD_destroy_response(response);
     return queued;
 }
 
@@ -90,12 +93,12 @@ static enum MHD_Result tell(struct MHD_Connection *connection, unsigned status, 
     char line[300];
     const int size = snprintf(line, sizeof line, "%s\n", text);
     return answer(connection, status,
-                  MHD_create_response_from_buffer((size_t)size, line, MHD_RESPMEM_MUST_COPY),
+                  mhd->MHD_create_response_from_buffer((size_t)size, line, MHD_RESPMEM_MUST_COPY),
                   "text/plain; charset=utf-8");
 }
 
 static enum MHD_Result give(struct MHD_Connection *connection, unsigned status, char *text, size_t size) {
-    return answer(connection, status, MHD_create_response_from_buffer(size, text, MHD_RESPMEM_MUST_FREE),
+    return answer(connection, status, mhd->MHD_create_response_from_buffer(size, text, MHD_RESPMEM_MUST_FREE),
                   "application/json");
 }
 
@@ -115,7 +118,7 @@ static ssize_t read_stream(void *user, uint64_t at, char *to, size_t size) {
         return (ssize_t)(sizeof beat - 1);
     }
     stream->is_suspended = true;
-    MHD_suspend_connection(stream->connection);
+    mhd->MHD_suspend_connection(stream->connection);
     return 0;
 }
 
@@ -135,12 +138,12 @@ static void end_stream(void *user) {
 
 /* The browser tells from where on when it connects again by itself. */
 static uint64_t first_message(const wh_http_t *http, struct MHD_Connection *connection) {
-    const char *id = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "id");
+    const char *id = mhd->MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "id");
     if (!id || strcmp(id, http->source.id) != 0) {
         return UINT64_MAX;
     }
-    const char *from = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "from");
-    const char *last = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID");
+    const char *from = mhd->MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "from");
+    const char *last = mhd->MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID");
     return last ? strtoull(last, NULL, 10) + 1 : from ? strtoull(from, NULL, 10) : 0;
 }
 
@@ -158,7 +161,7 @@ static enum MHD_Result begin_stream(wh_http_t *http, struct MHD_Connection *conn
     ++http->stream_count;
     ++http->counters.streams;
     struct MHD_Response *response =
-        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, stream, end_stream);
+        mhd->MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, stream, end_stream);
     return answer(connection, MHD_HTTP_OK, response, "text/event-stream");
 }
 
@@ -171,7 +174,7 @@ static void wake_streams(wh_http_t *http) {
         if (stream->is_suspended &&
             (stream->is_due || wh_feed_has_news(http->source.feed, &stream->reader))) {
             stream->is_suspended = false;
-            MHD_resume_connection(stream->connection);
+            mhd->MHD_resume_connection(stream->connection);
         }
     }
 }
@@ -179,7 +182,7 @@ static void wake_streams(wh_http_t *http) {
 /* ----------------------------------------------------------------------------------------------- requests */
 
 static const char *header(struct MHD_Connection *connection, const char *name) {
-    return MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
+    return mhd->MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
 }
 
 static const wh_http_file_t *find_file(const wh_http_t *http, const char *path) {
@@ -202,8 +205,8 @@ static enum MHD_Result get(wh_http_t *http, struct MHD_Connection *connection, c
     const wh_http_file_t *file = find_file(http, path);
     if (file) {
         return answer(connection, MHD_HTTP_OK,
-                      MHD_create_response_from_buffer(file->size, (void *)(uintptr_t)file->text,
-                                                      MHD_RESPMEM_PERSISTENT),
+                      mhd->MHD_create_response_from_buffer(file->size, (void *)(uintptr_t)file->text,
+                                                           MHD_RESPMEM_PERSISTENT),
                       file->type);
     }
     if (strcmp(path, "/document") == 0) {
@@ -265,7 +268,7 @@ static enum MHD_Result on_request(void *user, struct MHD_Connection *connection,
     (void)version;
     if (!*kept) {
         const union MHD_ConnectionInfo *info =
-            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+            mhd->MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
         if (info && info->socket_context) {
             ((peer_t *)info->socket_context)->is_heard = strcmp(method, MHD_HTTP_METHOD_GET) == 0;
         }
@@ -284,7 +287,7 @@ static void on_completed(void *user, struct MHD_Connection *connection, void **k
                          enum MHD_RequestTerminationCode how) {
     wh_http_t *http = user;
     const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+        mhd->MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     if (info && info->socket_context) {
         peer_t *peer = info->socket_context;
         peer->is_heard = false;
@@ -302,7 +305,7 @@ static void on_connection(void *user, struct MHD_Connection *connection, void **
     wh_http_t *http = user;
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
         const union MHD_ConnectionInfo *info =
-            MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+            mhd->MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
         peer_t *peer = wh_array_new(1, sizeof *peer);
         *peer = (peer_t){http->peers, info ? info->connect_fd : -1, false, wh_clock_us(CLOCK_MONOTONIC)};
         http->peers = peer;
@@ -349,21 +352,21 @@ bool wh_http_is_local(const wh_http_t *http) {
 }
 
 static int epoll_of(const wh_http_t *http) {
-    const union MHD_DaemonInfo *info = MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD);
+    const union MHD_DaemonInfo *info = mhd->MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD);
     return info ? info->epoll_fd : -1;
 }
 
 void wh_http_wait(const wh_http_t *http, int64_t wait_us, int wake) {
     struct pollfd ready[] = {{.fd = epoll_of(http), .events = POLLIN}, {.fd = wake, .events = POLLIN}};
     MHD_UNSIGNED_LONG_LONG due_ms = 0;
-    const bool is_due = MHD_get_timeout(http->daemon, &due_ms) == MHD_YES;
+    const bool is_due = mhd->MHD_get_timeout(http->daemon, &due_ms) == MHD_YES;
     const int64_t most_ms = wait_us / 1000;
     (void)poll(ready, 2, (int)(is_due && (int64_t)due_ms < most_ms ? (int64_t)due_ms : most_ms));
 }
 
 void wh_http_serve(wh_http_t *http) {
     wake_streams(http);
-    (void)MHD_run(http->daemon);
+    (void)mhd->MHD_run(http->daemon);
     end_slow_peers(http);
 }
 
@@ -377,6 +380,12 @@ static void ignore(void *user, const char *format, va_list arguments) {
 
 wh_http_t *wh_http_open(const char *address, const wh_http_source_t *source,
                         char problem[WH_HTTP_PROBLEM_BYTES]) {
+    mhd = wh_microhttpd();
+    if (!mhd) {
+        (void)snprintf(problem, WH_HTTP_PROBLEM_BYTES,
+                       WH_MICROHTTPD " cannot be loaded (expected it where the system's libraries are)");
+        return NULL;
+    }
     wh_http_t *http = wh_array_new(1, sizeof *http);
     http->source = *source;
     const int fd = wh_listen_open(address, &http->place, problem);
@@ -385,7 +394,7 @@ wh_http_t *wh_http_open(const char *address, const wh_http_source_t *source,
         return NULL;
     }
     wh_listen_name(&http->place, http->text);
-    http->daemon = MHD_start_daemon(
+    http->daemon = mhd->MHD_start_daemon(
         MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, on_request, http, MHD_OPTION_EXTERNAL_LOGGER,
         ignore, NULL, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
         (unsigned)WH_HTTP_CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)WH_HTTP_SECONDS,
@@ -408,10 +417,10 @@ void wh_http_close(wh_http_t *http) {
     for (stream_t *stream = http->streams; stream; stream = stream->next) {
         if (stream->is_suspended) {
             stream->is_suspended = false;
-            MHD_resume_connection(stream->connection);
+            mhd->MHD_resume_connection(stream->connection);
         }
     }
-    MHD_stop_daemon(http->daemon);
+    mhd->MHD_stop_daemon(http->daemon);
     free(http);
 }
 
