@@ -306,7 +306,11 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     mcs->sandbox = sandbox;
     mcs->stop.at_slice = INT64_MAX;
     wh_recorder_open(&mcs->recorder, record, script);
-    return wh_sandbox_protect(wh_sandbox_state(sandbox), open_words, mcs, result);
+    /* Nothing of it is garbage. */
+    (void)lua_gc(wh_sandbox_state(sandbox), LUA_GCSTOP);
+    const bool opened = wh_sandbox_protect(wh_sandbox_state(sandbox), open_words, mcs, result);
+    (void)lua_gc(wh_sandbox_state(sandbox), LUA_GCRESTART);
+    return opened;
 }
 
 /* ---------------------------------------------------------------------------------------------- finishing */

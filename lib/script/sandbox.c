@@ -173,8 +173,10 @@ static void set_limits(wh_sandbox_t *sandbox, const wh_sandbox_limits_t *limits)
 wh_sandbox_t *wh_sandbox_new(const wh_sandbox_limits_t *limits) {
     wh_sandbox_t *const sandbox = wh_array_new(1, sizeof *sandbox);
     set_limits(sandbox, limits);
+    wh_sandbox_blocks_open(&sandbox->blocks);
     sandbox->main = lua_newstate(wh_sandbox_allocate, sandbox);
     if (sandbox->main == NULL) {
+        wh_sandbox_blocks_close(&sandbox->blocks);
         free(sandbox);
         return NULL;
     }
@@ -194,6 +196,7 @@ void wh_sandbox_free(wh_sandbox_t *sandbox) {
         return;
     }
     lua_close(sandbox->main);
+    wh_sandbox_blocks_close(&sandbox->blocks);
     wh_sandbox_t *const strict = wh_pow_set_strict(NULL);
     wh_pow_set_strict(strict != sandbox ? strict : NULL);
     free(sandbox);

@@ -39,8 +39,18 @@ bool wh_sandbox_is_inner(const char *name);
 /* The most bytes that the prints of one run may write. */
 #define WH_SANDBOX_PRINT_BYTES ((size_t)16 << 20)
 
+/* Blocks of less than so many steps of 16 bytes are small. */
+#define WH_SANDBOX_BLOCK_KINDS 33
+
+typedef struct {
+    char *region;
+    size_t size, used;
+    void *free[WH_SANDBOX_BLOCK_KINDS]; /* by steps: each begins with the address of the next one */
+} wh_sandbox_blocks_t;
+
 struct wh_sandbox {
     lua_State *main;
+    wh_sandbox_blocks_t blocks;
     lua_State *running; /* the coroutine whose instructions run now */
     wh_sandbox_job_t *job;
     FILE *print_to;
@@ -64,6 +74,14 @@ struct wh_sandbox {
     int power_line;
     char power_source[LUA_IDSIZE];
 };
+
+/* --------------------------------------------------------------------------------------- sandbox_blocks.c */
+void wh_sandbox_blocks_open(wh_sandbox_blocks_t *blocks);
+/* All blocks must have been freed. */
+void wh_sandbox_blocks_close(wh_sandbox_blocks_t *blocks);
+/* Like realloc and free, with the size that the block has; `size` is above 0. */
+void *wh_sandbox_block_resize(wh_sandbox_blocks_t *blocks, void *block, size_t held, size_t size);
+void wh_sandbox_block_free(wh_sandbox_blocks_t *blocks, void *block, size_t held);
 
 /* --------------------------------------------------------------------------------------- sandbox_memory.c */
 void *wh_sandbox_allocate(void *sandbox, void *block, size_t old_size, size_t new_size);

@@ -1,6 +1,4 @@
 /* The sandbox's allocator: a cap, a high-water mark, and a price for large blocks. */
-#include <stdlib.h>
-
 #include "sandbox_internal.h"
 
 /* Copying and clearing take time without counted instructions: one step for each 64 bytes of a long string
@@ -31,7 +29,7 @@ static void *refuse_block(wh_sandbox_t *sandbox) {
 
 /* Shrinking never fails, because Lua relies on it. */
 static void *shrink(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
-    void *const moved = realloc(block, size);
+    void *const moved = wh_sandbox_block_resize(&sandbox->blocks, block, held, size);
     if (moved == NULL) {
         return block;
     }
@@ -40,7 +38,9 @@ static void *shrink(wh_sandbox_t *sandbox, void *block, size_t held, size_t size
 }
 
 static void *grow(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
-    void *const moved = size - held <= sandbox->memory_cap - sandbox->memory ? realloc(block, size) : NULL;
+    void *const moved = size - held <= sandbox->memory_cap - sandbox->memory
+                            ? wh_sandbox_block_resize(&sandbox->blocks, block, held, size)
+                            : NULL;
     if (moved == NULL) {
         return refuse_block(sandbox);
     }
@@ -60,7 +60,9 @@ void *wh_sandbox_allocate(void *opaque, void *block, size_t old_size, size_t new
     wh_sandbox_t *const sandbox = opaque;
     const size_t held = block != NULL ? old_size : 0;
     if (new_size == 0) {
-        free(block);
+        if (block != NULL) {
+            wh_sandbox_block_free(&sandbox->blocks, block, held);
+        }
         sandbox->memory -= held;
         return NULL;
     }
