@@ -32,7 +32,8 @@ typedef struct {
 
 /* The samples that a notch needs on each flank. A flank is straight for 0.62 of the notch's depth. A SEMI
  * notch 1 mm deep always has two samples there if samples are at most 0.31 mm apart on the rim: 3,041 in a
- * turn for 300 mm, 2,028 for 200 mm. With fewer samples it depends on their places. */
+ * turn for 300 mm, 2,028 for 200 mm, and 2 % more for a centre that is 2 % of the radius off the chuck's.
+ * With fewer samples it depends on their places. */
 #define WH_NOTCH_FLANK_LEAST 2
 
 /* The dent of a scan most like the notch: a dent judged a notch, else one that may be a notch, else the

@@ -249,7 +249,7 @@ static bool dips(const scene_t *scene, const look_t *from, const look_t *to) {
         wh_pose_t bodies[2] = {to->bodies[0], to->bodies[1]};
         for (size_t k = 0; k < 2; ++k) {
             const wh_vec3_t way = wh_vec3_subtract(&to->bodies[k].r, &from->bodies[k].r);
-            const wh_vec3_t part = wh_vec3_scale((wh_real_t)i / INSTANTS, &way);
+            const wh_vec3_t part = wh_vec3_scale((wh_real_t)i / (wh_real_t)INSTANTS, &way);
             bodies[k].r = wh_vec3_add(&from->bodies[k].r, &part);
         }
         const look_t look = look_at(scene, bodies);
