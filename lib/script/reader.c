@@ -97,7 +97,11 @@ void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *
     va_start(arguments, expected);
     vsnprintf(wanted, sizeof wanted, expected, arguments);
     va_end(arguments);
-    lua_pushstring(reader->L, text);
+    if (!text && field && lua_istable(reader->L, -1)) {
+        (void)wh_reader_push(reader, field);
+    } else {
+        lua_pushstring(reader->L, text);
+    }
     fail(reader, field, wanted);
 }
 

@@ -32,7 +32,8 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
-/* wh_reader_fail for a text value, which need not be on the stack; null: no value. */
+/* wh_reader_fail for a text value, which need not be on the stack; null: for what the table being read has
+ * in the field. */
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) __attribute__((noreturn, format(printf, 4, 5)));
 
