@@ -74,20 +74,22 @@ static bool is_known(const wh_flow_played_t *played, int32_t found) {
     return wafer != WH_FLOW_NONE && plan->lots[plan->wafers[wafer].lot].arrives_us == 0;
 }
 
-/* True if a wafer of some lot may come into the place. */
-static bool is_wanted(const wh_flow_played_t *played, int32_t place) {
+/* True if a wafer of some lot, but for this one or WH_FLOW_NONE, may come into the place. */
+static bool is_wanted(const wh_flow_played_t *played, int32_t place, int32_t but) {
     const wh_flow_plan_t *plan = &played->flow->plan;
     bool is_wanted = is_gone_to(plan, played->tool->place_stations[place]);
-    for (size_t w = 0; w < plan->wafer_count; ++w) {
-        is_wanted = is_wanted || plan->wafers[w].back == place;
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        is_wanted = is_wanted || (w != but && plan->wafers[w].back == place);
     }
     return is_wanted;
 }
 
-/* A wafer that no lot has, or none yet, would be in the way. */
+/* A wafer that no lot has, or none yet, would be in the way. Its own way back does not count: it has left by
+ * then. */
 static bool check_free(lua_State *L, const wh_flow_played_t *played, const int32_t lying[], size_t place) {
     const int32_t found = lying[place];
-    if (found == WH_FLOW_NONE || !is_wanted(played, (int32_t)place) || is_known(played, found)) {
+    if (found == WH_FLOW_NONE || is_known(played, found) ||
+        !is_wanted(played, (int32_t)place, played->numbers[found])) {
         return true;
     }
     lua_pushfstring(
@@ -156,7 +158,7 @@ bool wh_flow_bind_late(lua_State *L, const wh_flow_played_t *played, const int32
 bool wh_flow_check_stranger(lua_State *L, const wh_flow_played_t *played, const int32_t lying[],
                             int32_t place) {
     const int32_t found = lying[place];
-    if (found == WH_FLOW_NONE || is_under_way(played, found) || !is_wanted(played, place)) {
+    if (found == WH_FLOW_NONE || is_under_way(played, found) || !is_wanted(played, place, WH_FLOW_NONE)) {
         return true;
     }
     lua_pushfstring(L, "%s lies in %s, where wafers of lots go (expected no wafer)",
