@@ -163,6 +163,9 @@ static void read_slots(wh_reader_t *reader, wh_flow_tool_t *tool, const wh_flow_
         if (!whole || slot < 1 || slot > station->slots) {
             wh_reader_fail(reader, NULL, "slots from 1 to %d", (int)station->slots);
         }
+        if (tool->slot_sides[station->first_place + slot - 1] != WH_FLOW_BOTH) {
+            wh_reader_fail(reader, NULL, "each slot once, in `into` or in `out`");
+        }
         lua_pop(reader->L, 1);
         tool->slot_sides[station->first_place + slot - 1] = side;
     }
