@@ -111,6 +111,7 @@ typedef struct {
     bool is_played;        /* in a cell with axes, slice by slice */
     bool has_gains;        /* what less time of each robot and station brings is asked for */
     bool is_lateness_told; /* a stay beyond a window is told, and does not fail the run */
+    bool asks_steady;      /* it was to end as soon as it is steady */
     wh_flow_plan_t plan;
     wh_flow_figures_t figures;
 } wh_flow_t;

@@ -9,15 +9,18 @@
 /* The most exchanges in a row. */
 #define LONGEST 64
 
-/* The wafer that goes on first; one that is over stays on its arm. */
-static int32_t carried(const wh_flow_state_t *state, const wh_flow_robot_state_t *robot) {
+/* The wafer that goes on first, and in `other` the one behind it; one that is over stays on its arm. */
+static int32_t carried(const wh_flow_state_t *state, const wh_flow_robot_state_t *robot, int32_t *other) {
     int32_t a = robot->arms[0], b = robot->arms[1];
     a = a != WH_FLOW_NONE && state->wafers[a].is_over ? WH_FLOW_NONE : a;
     b = b != WH_FLOW_NONE && state->wafers[b].is_over ? WH_FLOW_NONE : b;
+    *other = WH_FLOW_NONE;
     if (a == WH_FLOW_NONE || b == WH_FLOW_NONE) {
         return a == WH_FLOW_NONE ? b : a;
     }
-    return robot->kept_us[0] <= robot->kept_us[1] ? a : b;
+    const bool a_first = robot->kept_us[0] <= robot->kept_us[1];
+    *other = a_first ? b : a;
+    return a_first ? a : b;
 }
 
 /* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is
@@ -215,7 +218,7 @@ static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow
         }
         const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
         const int32_t place = wh_flow_swap_way(state, robot, wafer, begin_us);
-        if (place != WH_FLOW_NONE) {
+        if (place != WH_FLOW_NONE && !wh_flow_is_outranked(state, robot, wafer, wh_flow_swap_way)) {
             found->wafer = wafer;
             found->place = place;
         }
@@ -288,8 +291,22 @@ static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int
     return found.wafer != WH_FLOW_NONE;
 }
 
+/* True if the place is or will be empty. */
+static bool is_open(const wh_flow_state_t *state, int32_t place) {
+    return place != WH_FLOW_NONE && !is_full(&state->places[place]);
+}
+
 bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                       wh_flow_order_t *order) {
-    const int32_t has = carried(state, &state->robots[robot]);
-    return has != WH_FLOW_NONE ? carry_on(state, robot, has, order) : take(state, rules, robot, order);
+    int32_t other = WH_FLOW_NONE;
+    const int32_t has = carried(state, &state->robots[robot], &other);
+    if (has == WH_FLOW_NONE) {
+        return take(state, rules, robot, order);
+    }
+    const bool goes_on = carry_on(state, robot, has, order);
+    if (other == WH_FLOW_NONE || (goes_on && is_open(state, order->place))) {
+        return goes_on;
+    }
+    /* Both arms are full, so that nothing can be exchanged: the place of the first wafer has failed. */
+    return is_open(state, choose_place(state, robot, other)) ? carry_on(state, robot, other, order) : goes_on;
 }

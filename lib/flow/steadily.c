@@ -151,11 +151,22 @@ static void add_station(snapshot_t *into, const wh_flow_state_t *state,
     add_ahead(into, state, station->done_us);
 }
 
-static void add_place_state(snapshot_t *into, const wh_flow_state_t *state, const wh_flow_place_t *place) {
+/* The number of wafers after which a clean is due by any recipe; what is above that decides nothing. */
+static int32_t most_before_clean(const wh_flow_station_t *of) {
+    int32_t most = of->clean_after;
+    for (size_t i = 0; of->has_recipes && i < WH_FLOW_RECIPES; ++i) {
+        most = of->by_recipe[i].clean_after > most ? of->by_recipe[i].clean_after : most;
+    }
+    return most;
+}
+
+static void add_place_state(snapshot_t *into, const wh_flow_state_t *state, const wh_flow_station_t *of,
+                            const wh_flow_place_t *place) {
+    const int32_t most = most_before_clean(of);
     add_wafer(into, state, place->wafer);
     add_wafer(into, state, place->coming);
     add(into, place->is_clean_due);
-    add(into, place->since_clean);
+    add(into, place->since_clean < most ? place->since_clean : most);
     add(into, place->recipe);
     add_ahead(into, state, place->leaving_us);
     add_ahead(into, state, place->clean_us);
@@ -175,7 +186,7 @@ static void add_stations(snapshot_t *into, const wh_flow_steadily_t *steadily, c
         const wh_flow_station_t *of = &state->tool->stations[s];
         add_station(into, state, &state->stations[s]);
         for (int32_t p = of->first_place; !steadily->is_outer[s] && p < of->first_place + of->slots; ++p) {
-            add_place_state(into, state, &state->places[p]);
+            add_place_state(into, state, of, &state->places[p]);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "../flow/waits.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "../text/nearest.h"
 #include "flow_own.h"
 #include "flow_plan.h"
 
@@ -112,20 +113,46 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
     }
 }
 
-/* A field that the result has not, `path` by name: the critical path was not kept, and is not empty. */
-static int refuse_path(lua_State *L) {
+/* Each field that a result may have: a script asks for those that it has not with nil. */
+static const char *const result_fields[] = {
+    "end",        "why",    "makespan_s", "wafers",   "left",           "lost",  "skipped",
+    "cycle_s",    "period", "per_hour",   "no_cycle", "longest_stay_s", "stays", "gap_s",
+    "textbook_s", "waits",  "path",       "robots",   "stations",
+};
+
+#define RESULT_FIELDS (sizeof result_fields / sizeof *result_fields)
+
+static bool is_result_field(const char *name) {
+    for (size_t i = 0; i < RESULT_FIELDS; ++i) {
+        if (strcmp(name, result_fields[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A field that the result has not: nil if there may be one. `path` was not kept, and is not empty. */
+static int look_up(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
-    if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "path") == 0) {
+    char meant[WH_NEAREST_TEXT], text[200];
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_tolstring(L, 2, NULL);
+    if (mcs->wanted.keeps == WH_FLOW_SUMS && strcmp(name, "path") == 0) {
         wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, "path: the critical path is not kept with --brief");
+    }
+    if (!is_result_field(name)) {
+        const char *const nearest = wh_text_nearest(name, result_fields, RESULT_FIELDS);
+        (void)snprintf(text, sizeof text, "what flow returned: there is no %.60s%s", name,
+                       wh_text_did_you_mean(meant, "; ", "", nearest));
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, text);
     }
     return 0;
 }
 
-/* The result on top of the stack raises an error where `path` is read. */
-static void set_path_apart(lua_State *L, wh_mcs_t *mcs) {
+/* The result on top of the stack raises an error where a field is read that no result has. */
+static void set_fields_apart(lua_State *L, wh_mcs_t *mcs) {
     lua_createtable(L, 0, 1);
     lua_pushlightuserdata(L, mcs);
-    lua_pushcclosure(L, refuse_path, 1);
+    lua_pushcclosure(L, look_up, 1);
     lua_setfield(L, -2, "__index");
     lua_setmetatable(L, -2);
 }
@@ -160,13 +187,12 @@ static void push_result(lua_State *L, wh_mcs_t *mcs, const wh_flow_figures_t *fi
     lua_setfield(L, -2, "stays");
     push_waits(L, figures);
     lua_setfield(L, -2, "waits");
-    if (mcs->wanted.keeps == WH_FLOW_SUMS) {
-        set_path_apart(L, mcs);
-    } else {
+    if (mcs->wanted.keeps != WH_FLOW_SUMS) {
         push_path(L, figures);
         lua_setfield(L, -2, "path");
     }
     push_all_shares(L, figures);
+    set_fields_apart(L, mcs);
 }
 
 /* Wafers are not at their ends: why, however long these texts are. */
@@ -263,7 +289,7 @@ static int play_flow(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_flow_tool_t *tool = mcs->layout->tool;
     wh_flow_t *flow = wh_flow_read_word(L, mcs, tool);
-    flow->plan.ends_steady = mcs->wanted.until_steady;
+    flow->plan.ends_steady = flow->asks_steady = mcs->wanted.until_steady;
     wh_flow_own_open(L, tool, &flow->plan);
     wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps, &flow->figures);
     const bool has_failed = wh_flow_own_close(L, &flow->plan);

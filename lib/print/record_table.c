@@ -274,6 +274,12 @@ static void print_cut(const wh_printer_t *printer) {
                 figures->result.is_steady ? "steady, and ended" : "cut", (double)figures->end_us / 1e6,
                 figures->result.left, wafers, wafers == 1 ? "wafer" : "wafers",
                 figures->result.left == 1 ? "its end" : "their ends");
+    } else if (record->flow && record->flow->asks_steady &&
+               record->flow->figures.result.end == WH_FLOW_DONE) {
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        fputs(
+            "not all in it came again, so that the flow was played to its end, and not until it is steady\n",
+            printer->out);
     }
 }
 

@@ -94,6 +94,13 @@ def to_come(model, route, number):
             and (wafer.step if wafer.toward is None else wafer.toward) < number and number < len(wafer.steps)]
 
 
+def outranked(model, robot, wafer, goes):
+    """It lies in its first place, and the robot could take one of a higher priority from there, though its lot came later."""
+    return wafer.step == 0 and any(
+        other.step == 0 and not other.ended and other.lies() and other.lot.get("priority", 0) > wafer.lot.get("priority", 0) and model.carries(robot, other)
+        and model.picking_from(robot, other, model.arrival(robot, other.place.station)) is not None and goes(model, robot, other) for other in model.wafers)
+
+
 def backward(model, robot):
     steps = steps_emptied(model, robot)
     order = sorted(steps, key=lambda step: round_key(model, step))
@@ -107,7 +114,7 @@ def backward(model, robot):
             continue
         for wafer in sorted(steps[step], key=entry):
             places = places_for(model, robot, wafer)
-            if places:
+            if places and not outranked(model, robot, wafer, places_for):
                 begun = begin_or_go(model, robot, wafer, places)
                 if wafer.toward is not None and wafer.place:
                     robot.behind = step
@@ -124,7 +131,7 @@ def in_order(model, robot):
             continue
         arrival = model.arrival(robot, wafer.place.station)
         begin, places = model.picking_from(robot, wafer, arrival), places_for(model, robot, wafer)
-        if begin is None or not places:
+        if begin is None or not places or outranked(model, robot, wafer, places_for):
             continue
         key = (wafer.done, -wafer.lot.get("priority", 0), -wafer.step, wafer.entered, wafer.order)
         key = (wafer.order,) if model.rule == "first_come" else key
@@ -137,18 +144,22 @@ def in_order(model, robot):
 
 # ------------------------------------------------------------------------------------------------------------ rule 10
 def swap(model, robot):
-    aboard = [wafer for wafer in robot.held() if not wafer.ended]
+    aboard = sorted((wafer for wafer in robot.held() if not wafer.ended), key=lambda wafer: (wafer.begun, wafer.order))
     if aboard:
-        return swap_loaded(model, robot, min(aboard, key=lambda wafer: (wafer.begun, wafer.order)))
+        first = is_open(aim(model, robot, aboard[0]))
+        if len(aboard) > 1 and not first and is_open(find_target(model, robot, aboard[1])):
+            return swap_loaded(model, robot, aboard[1])
+        return not aboard[0].ended and swap_loaded(model, robot, aboard[0])
     steps = steps_emptied(model, robot)
     firsts = {route: first_step(model, robot, route) for route in model.routes}
     coming = [route for route in model.routes if not model.relaxed and to_come_or_there(model, route, firsts[route])]
     wanted = [wafer for (number, route), wafers in steps.items() if route in coming and number == firsts[route] for wafer in wafers]
-    wanted = [wafer for wafer in wanted if target_of(model, robot, wafer)]
+    wanted = [wafer for wafer in wanted if target_of(model, robot, wafer) and not outranked(model, robot, wafer, target_of)]
     if not wanted and not any(steps.get((firsts[route], route)) for route in coming) and coming:
         return False
     if not wanted:
-        able = {step: [wafer for wafer in wafers if target_of(model, robot, wafer)] for step, wafers in steps.items()}
+        able = {step: [wafer for wafer in wafers if target_of(model, robot, wafer) and not outranked(model, robot, wafer, target_of)]
+                for step, wafers in steps.items()}
         able = {step: wafers for step, wafers in able.items() if wafers}
         if not able:
             return False
@@ -225,20 +236,38 @@ def best_full(model, robot, wafer, number):
     return min(full, key=lambda each: each[0])[1] if full else None
 
 
-def swap_loaded(model, robot, wafer):
-    """With a wafer: to an empty place of its next step, else to the place done first; there it waits and swaps."""
+def is_open(place):
+    """It is or will be empty."""
+    return place is not None and (place.wafer is None or place.leaves is not None)
+
+
+def find_target(model, robot, wafer):
+    """Where a wafer aboard goes next: an empty place of its next step, else the place done first."""
     if wafer.destination and wafer.destination.coming is wafer:
         wafer.destination.coming = None
     wafer.destination, wafer.toward = None, model.following(wafer, wafer.step)
     if wafer.toward is None:
         wafer.ended = wafer.lost = True
-        return False
+        return None
     places = model.destinations(robot, wafer, wafer.toward, None, model.now)
-    place = places[0] if places else best_full(model, robot, wafer, wafer.toward)
+    return places[0] if places else best_full(model, robot, wafer, wafer.toward)
+
+
+def aim(model, robot, wafer):
+    """Its next place awaits it from now on."""
+    place = find_target(model, robot, wafer)
+    if place is not None:
+        wafer.destination, place.coming = place, wafer
+    return place
+
+
+def swap_loaded(model, robot, wafer):
+    """With a wafer: to an empty place of its next step, else to the place done first; there it waits and swaps."""
+    place = aim(model, robot, wafer)
     if place is None:
-        robot.told = "waiting for place"
+        if not wafer.ended:
+            robot.told = "waiting for place"
         return False
-    wafer.destination, place.coming = place, wafer
     if model.go(robot, place.station):
         return True
     robot.told = "waiting for place"
