@@ -39,9 +39,18 @@ static bool refuse_line(const wh_transcript_t *played, size_t line, const char *
     return false;
 }
 
+/* True for a head that says more of the port before it. */
+static bool says_more(const wh_transcript_head_t *head) {
+    return strcmp(head->name, "mechanism") == 0 || strcmp(head->name, "unit") == 0 ||
+           strcmp(head->name, "line") == 0;
+}
+
 static bool is_of_port(const wh_transcript_t *played, size_t i) {
-    return i > 0 && strcmp(played->heads[i].name, "mechanism") == 0 &&
-           strcmp(played->heads[i - 1].name, "port") == 0;
+    size_t port = i;
+    while (port > 0 && says_more(&played->heads[port])) {
+        --port;
+    }
+    return port < i && strcmp(played->heads[port].name, "port") == 0;
 }
 
 static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
@@ -55,19 +64,23 @@ static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
         } else if (strcmp(head->name, "shows") == 0 && strcmp(head->text, "one run") == 0) {
             heads->shows_one_run = true;
         } else if (strcmp(head->name, "port") != 0 && !is_of_port(played, i)) {
-            return refuse_line(
-                played, head->line,
-                "no such head (expected layout, set, shows \"one run\", port, or mechanism behind its port)");
+            return refuse_line(played, head->line,
+                               "no such head (expected layout, set, shows \"one run\", port, or mechanism, "
+                               "unit or line behind "
+                               "its port)");
         }
     }
     return heads->layout || refuse_line(played, 1, "no layout (expected a head: layout \"FILE\")");
 }
 
-/* The mechanism of the port of this head, from a head `mechanism "NAME"` behind it; null: there is none. */
-static const char *mechanism_of(const wh_transcript_t *played, size_t port) {
-    const bool is_named =
-        port + 1 < played->head_count && strcmp(played->heads[port + 1].name, "mechanism") == 0;
-    return is_named ? played->heads[port + 1].text : NULL;
+/* The text of a head of this name that says more of the port of that head, such as `mechanism "NAME"`; null: there is none. */
+static const char *find_more(const wh_transcript_t *played, size_t port, const char *name) {
+    for (size_t i = port + 1; i < played->head_count && says_more(&played->heads[i]); ++i) {
+        if (strcmp(played->heads[i].name, name) == 0) {
+            return played->heads[i].text;
+        }
+    }
+    return NULL;
 }
 
 static bool add_port(wh_host_t *host, const wh_host_port_t *port) {
@@ -90,7 +103,10 @@ static bool add_ports(wh_host_t *host) {
         if (!file || at == (size_t)WH_HOST_CONTROLLERS) {
             return refuse_line(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
         }
-        const wh_host_port_t port = {.dialect = file + 1, .mechanism = mechanism_of(played, i)};
+        const wh_host_port_t port = {.dialect = file + 1,
+                                     .mechanism = find_more(played, i, "mechanism"),
+                                     .unit = find_more(played, i, "unit"),
+                                     .shares_line = find_more(played, i, "line")};
         if (at == host->count && !add_port(host, &port)) {
             fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect->message);
             return false;

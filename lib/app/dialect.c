@@ -8,7 +8,7 @@
 #include "dialect_say.h"
 
 typedef struct {
-    const char *path;
+    const char *path, *unit, *mechanism;
     wh_option_list_t said;
 } arguments_t;
 
@@ -17,8 +17,21 @@ static const wh_option_t options[] = {{"say", 0, "[PORT:]FRAME",
                                        "host hears at once; a dialect with "
                                        "several ports needs PORT; may be given more than once",
                                        WH_OPTION_LIST, .variable = offsetof(arguments_t, said)},
+                                      {"mechanism", 0, "NAME",
+                                       "Try it as the controller of this robot or station", WH_OPTION_TEXT,
+                                       .variable = offsetof(arguments_t, mechanism)},
+                                      {"unit", 0, "ADDRESS", "Try it as the unit of this address",
+                                       WH_OPTION_TEXT, .variable = offsetof(arguments_t, unit)},
                                       {0}};
-static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
+
+static void check_dialect_arguments(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    if ((arguments->mechanism || arguments->unit) && arguments->said.count == 0) {
+        argp_error(state, "--mechanism and --unit go with --say");
+    }
+}
+
+static const wh_option_table_t tables[] = {{options, 0, NULL, check_dialect_arguments}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "dialect",
@@ -69,6 +82,9 @@ static void print_order(const wh_dialect_t *dialect) {
     for (size_t i = 0; clients->port_count > 1 && i < clients->port_count; ++i) {
         printf("%s%s%s", i == 0 ? "ports that share it: " : ", ", clients->ports[i],
                i + 1 < clients->port_count ? "" : "\n");
+    }
+    if (clients->knows_units) {
+        puts("a line may carry several of its units, by address");
     }
     if (clients->in_order) {
         puts("answers come in the order of the requests");
@@ -168,9 +184,10 @@ int wh_app_dialect(int argc, char **argv) {
     wh_dialect_t dialect;
     int status = WH_EXIT_USAGE;
     wh_options_parse(&command_line, argc, argv, &arguments);
-    if (!wh_dialect_open(&dialect, arguments.path)) {
+    if (!wh_dialect_open(&dialect, arguments.path, arguments.unit)) {
         fprintf(stderr, "%s\n", dialect.message);
     } else if (arguments.said.count > 0) {
+        dialect.stands_for = arguments.mechanism;
         status =
             wh_dialect_say(&dialect, &arguments.said) && wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     } else {

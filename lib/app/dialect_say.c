@@ -93,6 +93,20 @@ static bool refuse_port(const wh_dialect_clients_t *clients, const char *body) {
     return false;
 }
 
+/* Where a line may carry several units: for which one the frame is. */
+static bool print_unit(wh_dialect_t *dialect, const char *body) {
+    char unit[WH_DIALECT_NAME_BYTES];
+    if (!dialect->clients.knows_units) {
+        return true;
+    }
+    if (!wh_dialect_unit_of(dialect, body, strlen(body), unit)) {
+        fprintf(stderr, "%s\n", dialect->message);
+        return false;
+    }
+    printf("  for unit %s\n", unit[0] != '\0' ? unit : "none");
+    return true;
+}
+
 static bool say_frame(wh_dialect_t *dialect, const char *body) {
     wh_client_t client = {"", 1};
     uint8_t frame[WH_FRAMING_LINE];
@@ -109,6 +123,9 @@ static bool say_frame(wh_dialect_t *dialect, const char *body) {
         return false;
     }
     print_bytes(">", frame, size);
+    if (!print_unit(dialect, body)) {
+        return false;
+    }
     const wh_decoded_t outcome = wh_dialect_decode(dialect, &client, body, strlen(body), &request, &failure);
     bool good = outcome != WH_DECODED_MISTAKE;
     if (outcome == WH_DECODED_REQUEST) {

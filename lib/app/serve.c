@@ -20,7 +20,7 @@
 typedef struct {
     wh_layout_arguments_t layout;
     wh_run_arguments_t run; /* only its files come from the command line */
-    wh_option_list_t dialects, mechanisms, tcp, pty;
+    wh_option_list_t dialects, mechanisms, units, tcp, pty;
     double rate; /* 0: not given */
     bool lockstep;
     const char *transcript, *coverage;
@@ -37,6 +37,11 @@ static const wh_option_t options[] = {
      "The dialect before it speaks for this: a robot or a station of the layout, such as an "
      "aligner (default: what its dialect says, else the whole cell)",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, mechanisms)},
+    {"unit", 0, "ADDRESS",
+     "The dialect before it is the unit of this address on its line; without a port of its own on the line "
+     "of "
+     "the dialect before that",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, units)},
     {"tcp", 0, "ADDRESS:PORT",
      "A dialect's port: listen there; without an address at 127.0.0.1, 0 is any port", WH_OPTION_LIST,
      .variable = offsetof(arguments_t, tcp)},
@@ -60,7 +65,8 @@ static void check_serve_arguments(const void *given, struct argp_state *state) {
     if (arguments->dialects.count == 0) {
         argp_error(state, "which --dialect?");
     }
-    if (ports < arguments->dialects.count || ports > WH_HOST_PORTS) {
+    if (ports + arguments->units.count < arguments->dialects.count || ports == 0 || ports > WH_HOST_PORTS ||
+        arguments->dialects.count > WH_HOST_PORTS) {
         argp_error(state,
                    "%zu --dialect, %zu --tcp and --pty (expected one port for each dialect, at most %d)",
                    arguments->dialects.count, ports, WH_HOST_PORTS);
@@ -116,20 +122,6 @@ static bool open_port(wh_host_t *host, const wh_host_port_t *port) {
     return true;
 }
 
-/* The mechanism between this dialect and the next one: null if there is none. */
-static const char *mechanism_of(const arguments_t *arguments, size_t dialect, int argc, char **argv) {
-    const wh_option_list_t *dialects = &arguments->dialects;
-    const int begin = place_of(argc, argv, dialects->items[dialect]);
-    const int end = dialect + 1 < dialects->count ? place_of(argc, argv, dialects->items[dialect + 1]) : argc;
-    const char *found = NULL;
-    for (size_t i = 0; i < arguments->mechanisms.count && !found; ++i) {
-        const char *name = arguments->mechanisms.items[i];
-        const int place = place_of(argc, argv, name);
-        found = place > begin && place < end ? name : NULL;
-    }
-    return found;
-}
-
 /* The next port of the command line, of either kind. */
 typedef struct {
     const arguments_t *arguments;
@@ -137,6 +129,20 @@ typedef struct {
     char **argv;
     size_t tcp, pty; /* taken so far */
 } addresses_t;
+
+/* The option of this list between this dialect and the next one, such as its mechanism; null: there is none. */
+static const char *option_of(const addresses_t *at, size_t dialect, const wh_option_list_t *list) {
+    const wh_option_list_t *dialects = &at->arguments->dialects;
+    const int begin = place_of(at->argc, at->argv, dialects->items[dialect]);
+    const int end =
+        dialect + 1 < dialects->count ? place_of(at->argc, at->argv, dialects->items[dialect + 1]) : at->argc;
+    const char *found = NULL;
+    for (size_t i = 0; i < list->count && !found; ++i) {
+        const int place = place_of(at->argc, at->argv, list->items[i]);
+        found = place > begin && place < end ? list->items[i] : NULL;
+    }
+    return found;
+}
 
 /* False: none is left. */
 static bool take_address(addresses_t *at, wh_host_port_t *port) {
@@ -167,8 +173,14 @@ static bool refuse_count(const wh_host_t *host, const addresses_t *at) {
 
 /* Opens a dialect with all of its ports, each at the next address. */
 static bool open_dialect(wh_host_t *host, addresses_t *at, size_t i) {
-    wh_host_port_t port = {.dialect = at->arguments->dialects.items[i],
-                           .mechanism = mechanism_of(at->arguments, i, at->argc, at->argv)};
+    const arguments_t *arguments = at->arguments;
+    wh_host_port_t port = {.dialect = arguments->dialects.items[i],
+                           .mechanism = option_of(at, i, &arguments->mechanisms),
+                           .unit = option_of(at, i, &arguments->units)};
+    port.shares_line = port.unit && !option_of(at, i, &arguments->tcp) && !option_of(at, i, &arguments->pty);
+    if (port.shares_line) {
+        return open_port(host, &port);
+    }
     bool good = (take_address(at, &port) || refuse_count(host, at)) && open_port(host, &port);
     while (good && wh_host_needs_port(host)) {
         port.dialect = NULL;
@@ -177,11 +189,22 @@ static bool open_dialect(wh_host_t *host, addresses_t *at, size_t i) {
     return good;
 }
 
+/* False if an option that belongs to a dialect stands before all of them, or twice behind one. */
+static bool are_placed(const addresses_t *at, const char *option, const wh_option_list_t *list) {
+    size_t placed = 0;
+    for (size_t i = 0; i < at->arguments->dialects.count; ++i) {
+        placed += option_of(at, i, list) ? 1 : 0;
+    }
+    if (placed < list->count) {
+        fprintf(stderr, "%s: %zu of %zu (expected one behind each --dialect at most)\n", option, placed,
+                list->count);
+    }
+    return placed == list->count;
+}
+
 static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
     addresses_t at = {.arguments = arguments, .argc = argc, .argv = argv};
-    size_t named = 0;
     for (size_t i = 0; i < arguments->dialects.count; ++i) {
-        named += mechanism_of(arguments, i, argc, argv) ? 1 : 0;
         if (!open_dialect(host, &at, i)) {
             return false;
         }
@@ -189,11 +212,8 @@ static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, 
     if (at.tcp + at.pty < arguments->tcp.count + arguments->pty.count) {
         return refuse_count(host, &at);
     }
-    if (named < arguments->mechanisms.count) {
-        fprintf(stderr, "--mechanism: %zu of %zu (expected one behind each --dialect at most)\n", named,
-                arguments->mechanisms.count);
-    }
-    return named == arguments->mechanisms.count;
+    return are_placed(&at, "--mechanism", &arguments->mechanisms) &&
+           are_placed(&at, "--unit", &arguments->units);
 }
 
 /* ------------------------------------------------------------------------------------------------ outputs */
@@ -201,7 +221,7 @@ static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, 
 /* Writes the first line and the description of the run, from which `waferhand converse` plays it. */
 static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
     wh_transcript_head_t *heads =
-        wh_array_new(2 + arguments->layout.parameters.count + 2 * host->count, sizeof *heads);
+        wh_array_new(2 + arguments->layout.parameters.count + 4 * host->count, sizeof *heads);
     char(*ports)[PATH_MAX + 80] = wh_array_new(host->count + 1, sizeof *ports);
     size_t count = 0;
     heads[count++] = (wh_transcript_head_t){"layout", arguments->layout.path, 0};
@@ -217,6 +237,12 @@ static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
         heads[count++] = (wh_transcript_head_t){"port", ports[i], 0};
         if (controller->mechanism.name && controller->leader == controller) {
             heads[count++] = (wh_transcript_head_t){"mechanism", controller->mechanism.name, 0};
+        }
+        if (controller->unit) {
+            heads[count++] = (wh_transcript_head_t){"unit", controller->unit, 0};
+        }
+        if (controller->carrier != controller) {
+            heads[count++] = (wh_transcript_head_t){"line", controller->carrier->name, 0};
         }
     }
     const bool written = (host->writes_json ? wh_transcript_write_json_heads
@@ -364,7 +390,7 @@ static void say_untried(void *user, const char *list) {
 
 static void say_controller(const wh_controller_t *controller) {
     const wh_controller_counters_t *c = &controller->counters;
-    const wh_port_counters_t *port = &controller->line.port.counters;
+    const wh_port_counters_t *port = &controller->carrier->line.port.counters;
     fprintf(stderr,
             "serve: %s: %" PRIu64 " client%s, %" PRIu64 " frame%s, %" PRIu64 " bad, %" PRIu64
             " repeated, %" PRIu64 " action%s, %" PRIu64 " busy, %" PRIu64 " without an ACKN, %" PRIu64
@@ -372,6 +398,10 @@ static void say_controller(const wh_controller_t *controller) {
             controller->name, port->clients, WH_PLURAL(port->clients), c->frames, WH_PLURAL(c->frames),
             c->bad, c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
             WH_PLURAL(c->mistakes));
+    if (c->nobodys > 0) {
+        fprintf(stderr, "serve: %s: %" PRIu64 " frame%s for units that its line does not have\n",
+                controller->name, c->nobodys, WH_PLURAL(c->nobodys));
+    }
     if (port->idle > 0) {
         fprintf(stderr, "serve: %s: %" PRIu64 " silent client%s closed\n", controller->name, port->idle,
                 port->idle == 1 ? " was" : "s were");
@@ -551,6 +581,7 @@ int wh_app_serve(int argc, char **argv) {
     wh_layout_arguments_free(&arguments.layout);
     wh_option_list_free(&arguments.dialects);
     wh_option_list_free(&arguments.mechanisms);
+    wh_option_list_free(&arguments.units);
     wh_option_list_free(&arguments.tcp);
     wh_option_list_free(&arguments.pty);
     wh_option_list_free(&arguments.beside.allowed);

@@ -36,11 +36,13 @@ bool wh_serve_beside_allow(const wh_serve_beside_t *beside, wh_allow_t *allow) {
 
 void wh_serve_beside_tell(const wh_host_t *host, const wh_controller_t *controller, const char *what) {
     const char *warning = "";
-    if (!controller->line.port.is_local) {
+    const wh_port_t *port = &controller->carrier->line.port;
+    if (!port->is_local) {
         warning = host->allow ? ": the allowed addresses can command it"
                               : ": whoever reaches this machine can command it";
     }
-    fprintf(stderr, "serve: %s, %s, at %s%s\n", controller->name, what, controller->line.port.place, warning);
+    fprintf(stderr, "serve: %s, %s, at %s%s%s%s\n", controller->name, what, port->place,
+            controller->unit ? " as unit " : "", controller->unit ? controller->unit : "", warning);
 }
 
 bool wh_serve_beside_open(const wh_serve_beside_t *beside, wh_host_t *host) {
@@ -57,11 +59,14 @@ bool wh_serve_beside_open(const wh_serve_beside_t *beside, wh_host_t *host) {
 }
 
 static json_t *describe_port(const wh_controller_t *controller) {
-    const char *place = controller->line.port.place;
+    const char *place = controller->carrier->line.port.place;
     const char *colon = strrchr(place, ':');
     json_t *port = json_object();
     wh_json_put(port, "name", wh_json_text(controller->name));
     wh_json_put(port, "dialect", wh_json_text(controller->dialect->path));
+    if (controller->unit) {
+        wh_json_put(port, "unit", wh_json_text(controller->unit));
+    }
     if (colon && strchr(place, '/') == NULL) {
         char host[WH_PORT_PLACE_BYTES];
         const bool has_brackets = place[0] == '[';

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../record/record.h"
+#include "events.h"
 #include "journal.h"
 #include "queue.h"
 #include "status.h"
@@ -19,6 +20,7 @@ void wh_host_begin_clock(wh_host_t *host, wh_controller_t *controller) {
     host->clock.base_wall_us = wh_host_now(host);
     host->clock.base_run_us = wh_session_time_us(session);
     host->clock.slice = wh_session_slice(session);
+    wh_host_look(host);
 }
 
 /* ----------------------------------------------------------------------------------------------- stopping */
@@ -134,6 +136,7 @@ void wh_controller_end(wh_controller_t *controller, wh_status_t number, const ch
     /* The encoder asks for the controller's state, so the action has ended before it is told. */
     controller->action.is_there = false;
     controller->action.is_running = false;
+    wh_host_tell_load_ports(host); /* before the host hears that the action is over */
     const bool is_owed = tell_end(controller, number, text, seconds);
     if (controller->line.told == before) { /* the host's next frame comes behind this end all the same */
         wh_host_note(host, controller, WH_TRANSCRIPT_ENDED, NULL, 0);

@@ -92,14 +92,15 @@ typedef struct {
 
 /* The events that a dialect asks for in `events`; without that, those of wafers alone. */
 typedef enum {
-    WH_HOST_WAFER,    /* something befell a wafer */
-    WH_HOST_SENSOR,   /* a gripper's vacuum sensor has changed */
-    WH_HOST_VALVE,    /* a gripper's valve was switched */
-    WH_HOST_HOLD,     /* a HOLD begins, or ends */
-    WH_HOST_POSITION, /* an action has ended well */
-    WH_HOST_ERROR,    /* an action has failed */
-    WH_HOST_DOOR,     /* a door has come to an end, or has left it */
-    WH_HOST_MODE,     /* a robot's own controller has changed: its power, its mode, ... */
+    WH_HOST_WAFER,     /* something befell a wafer */
+    WH_HOST_SENSOR,    /* a gripper's vacuum sensor has changed */
+    WH_HOST_VALVE,     /* a gripper's valve was switched */
+    WH_HOST_HOLD,      /* a HOLD begins, or ends */
+    WH_HOST_POSITION,  /* an action has ended well */
+    WH_HOST_ERROR,     /* an action has failed */
+    WH_HOST_DOOR,      /* a door has come to an end, or has left it */
+    WH_HOST_MODE,      /* a robot's own controller has changed: its power, its mode, ... */
+    WH_HOST_LOAD_PORT, /* a load port has reached a state, or begins a step; its carrier comes or goes */
     WH_HOST_EVENTS
 } wh_host_event_kind_t;
 extern const char *const wh_host_event_names[WH_HOST_EVENTS + 1];
@@ -112,6 +113,7 @@ typedef struct {
     bool in_order;          /* the next frame of a port is read once all before it are answered */
     bool hears_testers;     /* it has the function `tester` */
     bool greets, heeds_going; /* the dialect has the functions `connected` and `gone` */
+    bool knows_units;         /* it has the function `unit_of`: a line may carry several of its units */
     unsigned events;          /* it is told these: bits, 1 << WH_HOST_WAFER */
     size_t port_count;        /* at least 1 */
     char ports[WH_DIALECT_PORTS][WH_DIALECT_NAME_BYTES]; /* their names; empty: it has one */
@@ -126,11 +128,13 @@ typedef struct {
 /* Read-only for others. Must not be moved while it is open. */
 typedef struct {
     wh_sandbox_t *sandbox;
-    const char *path; /* the caller's */
+    const char *path;       /* the caller's */
+    const char *unit;       /* its address on its line; null: none was given. The caller's, */
+    const char *stands_for; /* as this name in the layout, which the caller sets; null: several things */
     char name[WH_DIALECT_NAME_BYTES];
     wh_mechanism_t mechanism;
     wh_framing_t framing; /* for the bytes that the host sends */
-    wh_framing_t replies; /* for the bytes that it is sent: the same, but for the starts */
+    wh_framing_t replies; /* for the bytes that it is sent: the same, but for the starts and ends */
     wh_dialect_units_t units;
     wh_dialect_timing_t timing;
     wh_chaos_t chaos;
@@ -153,8 +157,9 @@ typedef struct {
 #define WH_DIALECT_CONTROL ":control"
 
 /* Reads the file. False, with the reason in `message`, if it cannot be read or says something wrong: file,
- * field, value, and what was expected. To be closed either way. */
-bool wh_dialect_open(wh_dialect_t *dialect, const char *path);
+ * field, value, and what was expected. To be closed either way. `unit` is its address on its line, which
+ * host.unit returns; null: it was given none. */
+bool wh_dialect_open(wh_dialect_t *dialect, const char *path, const char *unit);
 void wh_dialect_close(wh_dialect_t *dialect);
 
 /* Makes this text the `message`: one line that names the file, if the text does not begin with it. Control
@@ -193,6 +198,11 @@ wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client,
                                size_t size, wh_request_t *request, wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
+/* Calls unit_of(frame): the address of the unit that the frame is for, or an empty text. False: a mistake, see
+ * `message`. */
+bool wh_dialect_unit_of(wh_dialect_t *dialect, const char *frame, size_t size,
+                        char unit[WH_DIALECT_NAME_BYTES]);
+
 /* ------------------------------------------------------------------------------------------------ a reply */
 
 /* The result of a request. */
@@ -214,12 +224,13 @@ typedef struct {
     const char *kind;  /* wh_event_name */
     bool is_complaint; /* of the cell: such as slot_occupied */
     const char *wafer, *gripper;
-    double seconds;     /* simulated, since the run's beginning */
-    int value;          /* a sensor or valve is on, a HOLD begins: 0 or 1; an error's number; -1: none */
-    const char *at;     /* the controller whose action or HOLD it is; null: none's */
-    const char *door;   /* null: none */
-    const char *state;  /* of a robot's own controller, name=value pairs; null: none */
-    wh_client_t client; /* to whom it is told */
+    double seconds;        /* simulated, since the run's beginning */
+    int value;             /* a sensor or valve is on, a HOLD begins: 0 or 1; an error's number; -1: none */
+    const char *at;        /* the controller whose action or HOLD it is; null: none's */
+    const char *door;      /* null: none */
+    const char *state;     /* of a robot's own controller, name=value pairs; null: none */
+    const char *load_port; /* what it does, name=value pairs; null: none */
+    wh_client_t client;    /* to whom it is told */
 } wh_host_event_t;
 
 /* Calls the command's run(request, now). `now` is asked for a result of WH_OK only if that function takes it.
@@ -266,9 +277,10 @@ bool wh_dialect_speaks(const wh_dialect_t *dialect, wh_status_t number);
  * call. */
 void wh_dialect_show(wh_dialect_t *dialect, const wh_layout_t *layout);
 
-/* Registry keys of the dialect's table and of the layout; for lib/host alone. */
+/* Registry keys of the dialect's table, of the layout, and of the wh_dialect_t; for lib/host alone. */
 extern char wh_dialect_key;
 extern char wh_dialect_layout_key;
+extern char wh_dialect_self_key;
 int wh_dialect_open_host(lua_State *L);
 
 #endif

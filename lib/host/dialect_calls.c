@@ -1,4 +1,4 @@
-/* Calls a dialect's functions: decode, run and the encoders. */
+/* Calls a dialect's functions that make requests and lines of frames: decode, unit_of and run. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,30 +12,7 @@
 #include "dialect_internal.h"
 #include "values.h"
 
-const char *const wh_encoder_names[WH_ENCODERS] = {[WH_ENCODE_ACKNOWLEDGE] = "acknowledge",
-                                                   [WH_ENCODE_ANSWER] = "answer",
-                                                   [WH_ENCODE_COMPLETE] = "complete",
-                                                   [WH_ENCODE_REFUSE] = "refuse",
-                                                   [WH_ENCODE_BAD] = "bad",
-                                                   [WH_ENCODE_EVENT] = "event",
-                                                   [WH_ENCODE_UNACKNOWLEDGED] = "unacknowledged"};
-
 /* ---------------------------------------------------------------------------------------------- refusals */
-
-/* A call of one function, and its result. */
-typedef struct {
-    wh_dialect_t *dialect;
-    const wh_client_t *client;
-    const char *frame;
-    size_t size;
-    bool *stops;
-    wh_now_t *ask;
-    void *user;
-    wh_request_t *request;
-    wh_lines_t *lines;
-    wh_encoder_t encoder;
-    const wh_told_t *told;
-} call_t;
 
 /* A field of the error's table, as a text. */
 static void take_error_text(lua_State *L, const char *field, char *text, size_t size) {
@@ -75,8 +52,7 @@ bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure) {
     return is_refusal;
 }
 
-/* Calls with a fresh budget. */
-static bool call_dialect(wh_dialect_t *dialect, lua_CFunction function, call_t *argument) {
+bool wh_dialect_call(wh_dialect_t *dialect, lua_CFunction function, wh_dialect_call_t *argument) {
     wh_sandbox_result_t result;
     wh_sandbox_renew(dialect->sandbox);
     if (wh_sandbox_protect(wh_sandbox_state(dialect->sandbox), function, argument, &result)) {
@@ -86,7 +62,7 @@ static bool call_dialect(wh_dialect_t *dialect, lua_CFunction function, call_t *
     return false;
 }
 
-static wh_decoded_t outcome_of(wh_dialect_t *dialect, bool done, wh_failure_t *failure) {
+wh_decoded_t wh_dialect_outcome(wh_dialect_t *dialect, bool done, wh_failure_t *failure) {
     if (done) {
         return WH_DECODED_REQUEST;
     }
@@ -133,8 +109,7 @@ static const wh_dialect_command_t *find_command(const wh_dialect_t *dialect, con
     return NULL;
 }
 
-/* Pushes { port = , number = }. */
-static void push_client(lua_State *L, const wh_client_t *client) {
+void wh_dialect_push_client(lua_State *L, const wh_client_t *client) {
     lua_createtable(L, 0, 2);
     wh_lua_set_text(L, "port", client->port);
     wh_lua_set_integer(L, "number", (lua_Integer)client->number);
@@ -143,10 +118,10 @@ static void push_client(lua_State *L, const wh_client_t *client) {
 /* Runs protected. */
 static int decode_frame(lua_State *L) {
     char name[WH_DIALECT_NAME_BYTES];
-    call_t *it = lua_touserdata(L, 1);
+    wh_dialect_call_t *it = lua_touserdata(L, 1);
     wh_dialect_push(L, "decode", NULL);
     lua_pushlstring(L, it->frame, it->size);
-    push_client(L, it->client);
+    wh_dialect_push_client(L, it->client);
     lua_call(L, 2, 1);
     if (lua_isnil(L, -1)) {
         return 0;
@@ -169,11 +144,12 @@ static int decode_frame(lua_State *L) {
 
 wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const char *frame,
                                size_t size, wh_request_t *request, wh_failure_t *failure) {
-    call_t it = {.dialect = dialect, .client = client, .frame = frame, .size = size, .request = request};
+    wh_dialect_call_t it = {
+        .dialect = dialect, .client = client, .frame = frame, .size = size, .request = request};
     *request = (wh_request_t){.reference = LUA_NOREF};
     memset(failure, 0, sizeof *failure);
-    const bool done = call_dialect(dialect, decode_frame, &it);
-    const wh_decoded_t outcome = outcome_of(dialect, done, failure);
+    const bool done = wh_dialect_call(dialect, decode_frame, &it);
+    const wh_decoded_t outcome = wh_dialect_outcome(dialect, done, failure);
     const bool is_none = outcome == WH_DECODED_REQUEST && !request->command;
     return is_none ? WH_DECODED_NOTHING : outcome;
 }
@@ -185,9 +161,35 @@ void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request) {
     *request = (wh_request_t){.reference = LUA_NOREF};
 }
 
+/* Runs protected: leaves the address in `unit`. */
+static int find_unit(lua_State *L) {
+    const wh_dialect_call_t *it = lua_touserdata(L, 1);
+    size_t size = 0;
+    wh_dialect_push(L, "unit_of", NULL);
+    lua_pushlstring(L, it->frame, it->size);
+    lua_call(L, 1, 1);
+    const bool is_unit = lua_type(L, -1) == LUA_TSTRING || lua_isinteger(L, -1);
+    const char *text = is_unit ? lua_tolstring(L, -1, &size) : "";
+    if (!is_unit && !lua_isnil(L, -1)) {
+        return luaL_error(L, "%s: unit_of returned %s (expected a text, a whole number, or nil)",
+                          it->dialect->path, luaL_typename(L, -1));
+    }
+    /* A host's own text that is too long is no unit's. */
+    const bool fits = size < WH_DIALECT_NAME_BYTES && strlen(text) == size;
+    (void)snprintf(it->unit, WH_DIALECT_NAME_BYTES, "%s", fits ? text : "");
+    return 0;
+}
+
+bool wh_dialect_unit_of(wh_dialect_t *dialect, const char *frame, size_t size,
+                        char unit[WH_DIALECT_NAME_BYTES]) {
+    wh_dialect_call_t it = {.dialect = dialect, .frame = frame, .size = size, .unit = unit};
+    unit[0] = '\0';
+    return wh_dialect_call(dialect, find_unit, &it);
+}
+
 /* -------------------------------------------------------------------------------------------------- lines */
 
-static void take_typed_line(lua_State *L, const call_t *it) {
+static void take_typed_line(lua_State *L, const wh_dialect_call_t *it) {
     const wh_dialect_command_t *command = it->request->command;
     size_t size = 0;
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &size) : NULL;
@@ -222,7 +224,7 @@ static bool takes_second(lua_State *L) {
     return lua_getinfo(L, ">u", &debug) != 0 && (debug.nparams >= 2 || debug.isvararg != 0);
 }
 
-static void push_now(lua_State *L, const call_t *it) {
+static void push_now(lua_State *L, const wh_dialect_call_t *it) {
     wh_result_t now = {.answer = "", .status = ""};
     if (it->ask) {
         it->ask(it->user, &now);
@@ -232,7 +234,7 @@ static void push_now(lua_State *L, const call_t *it) {
 
 /* Runs protected. */
 static int run_command(lua_State *L) {
-    call_t *it = lua_touserdata(L, 1);
+    wh_dialect_call_t *it = lua_touserdata(L, 1);
     const wh_dialect_command_t *command = it->request->command;
     wh_dialect_push(L, "commands", command->name);
     if (lua_getfield(L, -1, "run") == LUA_TNIL) {
@@ -262,271 +264,8 @@ static int run_command(lua_State *L) {
 wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_now_t *ask, void *user,
                             wh_lines_t *lines, wh_failure_t *failure) {
     wh_request_t asked = *request;
-    call_t it = {.dialect = dialect, .request = &asked, .ask = ask, .user = user, .lines = lines};
+    wh_dialect_call_t it = {.dialect = dialect, .request = &asked, .ask = ask, .user = user, .lines = lines};
     lines->count = 0;
     memset(failure, 0, sizeof *failure);
-    return outcome_of(dialect, call_dialect(dialect, run_command, &it), failure);
-}
-
-/* ----------------------------------------------------------------------------------------------- encoding */
-
-static void push_request(lua_State *L, const wh_request_t *request) {
-    if (!request || request->reference == LUA_NOREF) {
-        lua_newtable(L);
-    } else {
-        lua_rawgeti(L, LUA_REGISTRYINDEX, request->reference);
-    }
-}
-
-static void push_failure(lua_State *L, const wh_dialect_t *dialect, const wh_failure_t *failure) {
-    lua_newtable(L);
-    wh_dialect_set_error(L, dialect, failure->number, failure->code);
-    wh_lua_set_text(L, "detail", failure->detail);
-}
-
-/* A command's own `answer` makes result.reply of the result on top of the stack. */
-static void set_reply(lua_State *L, const call_t *it) {
-    const wh_dialect_command_t *command = it->told->request->command;
-    wh_dialect_push(L, "commands", command->name);
-    if (lua_getfield(L, -1, "answer") == LUA_TFUNCTION) {
-        push_request(L, it->told->request);
-        lua_pushvalue(L, -4);
-        lua_call(L, 2, 1);
-        lua_setfield(L, -3, "reply");
-    } else {
-        lua_pop(L, 1);
-    }
-    lua_pop(L, 1);
-}
-
-static void push_event(lua_State *L, const wh_host_event_t *event) {
-    lua_newtable(L);
-    wh_lua_set_text(L, "kind", event->kind);
-    wh_lua_set_boolean(L, "is_complaint", event->is_complaint);
-    wh_lua_set_number(L, "seconds", event->seconds);
-    wh_lua_set_text(L, "wafer", event->wafer);
-    wh_lua_set_text(L, "gripper", event->gripper);
-    wh_lua_set_text(L, "port", event->client.port);
-    wh_lua_set_integer(L, "client", (lua_Integer)event->client.number);
-    if (event->value >= 0) {
-        wh_lua_set_integer(L, "value", event->value);
-    }
-    if (event->door) {
-        wh_lua_set_text(L, "door", event->door);
-    }
-    if (event->state) {
-        wh_push_values(L, event->state);
-        lua_setfield(L, -2, "controller");
-    }
-    if (event->at) {
-        wh_lua_set_text(L, "at", event->at);
-    }
-}
-
-/* Pushes the arguments of the encoder. Returns how many there are. */
-static int push_told(lua_State *L, const call_t *it) {
-    const wh_told_t *told = it->told;
-    int count = 0;
-    if (told->request) {
-        push_request(L, told->request);
-        ++count;
-    }
-    if (told->result) {
-        wh_dialect_push_result(L, it->dialect, told->result);
-        if (told->request && told->result->number == WH_OK) {
-            set_reply(L, it);
-        }
-        ++count;
-    }
-    if (told->failure) {
-        push_failure(L, it->dialect, told->failure);
-        ++count;
-    }
-    if (told->event) {
-        push_event(L, told->event);
-        ++count;
-    }
-    if (told->reason) {
-        lua_pushstring(L, told->reason);
-        ++count;
-    }
-    return count;
-}
-
-/* The start that an encoder returned behind its text, on top of the stack; nil: the first. */
-static size_t take_start(lua_State *L, const call_t *it) {
-    const wh_framing_t *framing = &it->dialect->replies;
-    size_t size = 0;
-    const char *start = lua_isnil(L, -1) ? NULL : luaL_tolstring(L, -1, &size);
-    for (size_t i = 0; start && i < framing->start_count; ++i) {
-        const wh_framing_mark_t *mark = &framing->starts[i];
-        if (mark->size == size && memcmp(mark->bytes, start, size) == 0) {
-            return i;
-        }
-    }
-    if (start) {
-        char known[WH_DIALECT_STARTS_BYTES];
-        luaL_error(L, "%s: an encoder's second value: %s (expected one of framing.replies: %s)",
-                   it->dialect->path, start, wh_dialect_list_starts(framing, known));
-    }
-    return 0;
-}
-
-/* Replaces the list at index 2 by its texts with a byte 0 between them. */
-static void join_frames(lua_State *L, const call_t *it, const char *function) {
-    luaL_Buffer buffer;
-    luaL_buffinit(L, &buffer);
-    const lua_Integer count = (lua_Integer)lua_rawlen(L, 2);
-    for (lua_Integer i = 1; i <= count; ++i) {
-        if (lua_rawgeti(L, 2, i) != LUA_TSTRING) {
-            luaL_error(L, "%s: %s: entry %d is no text", it->dialect->path, function, (int)i);
-        }
-        luaL_addvalue(&buffer);
-        luaL_addlstring(&buffer, "", i < count ? 1 : 0);
-    }
-    luaL_pushresult(&buffer);
-    lua_replace(L, 2);
-}
-
-/* Makes the dialect's text of the value at index 2; nil: none. `function` names it in messages. */
-static void take_text(lua_State *L, const call_t *it, const char *function) {
-    wh_dialect_t *dialect = it->dialect;
-    size_t size = 0;
-    if (lua_istable(L, 2)) {
-        join_frames(L, it, function);
-    }
-    const char *text = lua_type(L, 2) == LUA_TSTRING ? lua_tolstring(L, 2, &size) : NULL;
-    if (!text || size > WH_FRAMING_LINE) {
-        luaL_error(L,
-                   "%s: %s returned no frame (expected a text of at most %d bytes, a list of texts, or nil)",
-                   dialect->path, function, WH_FRAMING_LINE);
-        return;
-    }
-    dialect->text = wh_array_new(size + 1, 1);
-    memcpy(dialect->text, text, size);
-    dialect->text_size = size;
-}
-
-/* Runs protected. */
-static int encode_body(lua_State *L) {
-    call_t *it = lua_touserdata(L, 1);
-    wh_dialect_t *dialect = it->dialect;
-    char function[40];
-    wh_dialect_push(L, "encode", wh_encoder_names[it->encoder]);
-    lua_call(L, push_told(L, it), 2);
-    if (lua_isnil(L, -2)) {
-        return 0;
-    }
-    dialect->text_start = take_start(L, it);
-    lua_settop(L, 3);
-    (void)snprintf(function, sizeof function, "encode.%s", wh_encoder_names[it->encoder]);
-    take_text(L, it, function);
-    return 0;
-}
-
-static void drop_text(wh_dialect_t *dialect) {
-    free(dialect->text);
-    dialect->text = NULL;
-    dialect->text_size = 0;
-    dialect->text_start = 0;
-}
-
-bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_told_t *told) {
-    call_t it = {.dialect = dialect, .encoder = encoder, .told = told};
-    drop_text(dialect);
-    return !dialect->encodes[encoder] || call_dialect(dialect, encode_body, &it);
-}
-
-/* ------------------------------------------------------------------------------------------------ clients */
-
-/* Runs protected. */
-static int call_connected(lua_State *L) {
-    const call_t *it = lua_touserdata(L, 1);
-    wh_dialect_push(L, "connected", NULL);
-    push_client(L, it->client);
-    lua_call(L, 1, 1);
-    if (!lua_isnil(L, 2)) {
-        take_text(L, it, "connected");
-    }
-    return 0;
-}
-
-static void take_condition(lua_State *L, const wh_dialect_t *dialect, const char *function,
-                           wh_lines_t *lines) {
-    size_t size = 0;
-    const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &size) : NULL;
-    const wh_word_t *word = text ? wh_word_of(text) : NULL;
-    if (!word || word->kind != WH_WORD_CONTROLLER || size >= WH_DIALECT_LINE_BYTES || strlen(text) != size ||
-        lines->count == WH_DIALECT_LINES) {
-        luaL_error(L, "%s: %s: \"%s\" (expected at most %d lines that begin with CONTROLLER)", dialect->path,
-                   function, text ? text : luaL_typename(L, -1), WH_DIALECT_LINES);
-        return;
-    }
-    memcpy(lines->lines[lines->count++], text, size + 1);
-}
-
-void wh_dialect_take_conditions(lua_State *L, const wh_dialect_t *dialect, const char *function,
-                                wh_lines_t *lines) {
-    lines->count = 0;
-    if (lua_isnil(L, -1)) {
-        return;
-    }
-    if (!lua_istable(L, -1)) {
-        take_condition(L, dialect, function, lines);
-        return;
-    }
-    for (lua_Integer i = 1; lua_geti(L, -1, i) != LUA_TNIL; ++i) {
-        take_condition(L, dialect, function, lines);
-        lua_pop(L, 1);
-    }
-    lua_pop(L, 1);
-}
-
-/* Runs protected. */
-static int call_gone(lua_State *L) {
-    const call_t *it = lua_touserdata(L, 1);
-    wh_dialect_push(L, "gone", NULL);
-    push_client(L, it->client);
-    lua_call(L, 1, 1);
-    wh_dialect_take_conditions(L, it->dialect, "gone", it->lines);
-    return 0;
-}
-
-bool wh_dialect_welcome(wh_dialect_t *dialect, const wh_client_t *client) {
-    call_t it = {.dialect = dialect, .client = client};
-    drop_text(dialect);
-    return !dialect->clients.greets || call_dialect(dialect, call_connected, &it);
-}
-
-bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client, wh_lines_t *lines) {
-    call_t it = {.dialect = dialect, .client = client, .lines = lines};
-    lines->count = 0;
-    drop_text(dialect);
-    return !dialect->clients.heeds_going || call_dialect(dialect, call_gone, &it);
-}
-
-/* Runs protected. */
-static int call_tester(lua_State *L) {
-    const call_t *it = lua_touserdata(L, 1);
-    wh_dialect_push(L, "tester", NULL);
-    lua_pushstring(L, it->frame);
-    lua_call(L, 1, 1);
-    it->lines->count = 0;
-    *it->stops = lua_isboolean(L, -1) && lua_toboolean(L, -1) != 0;
-    if (!lua_isboolean(L, -1)) {
-        wh_dialect_take_conditions(L, it->dialect, "tester", it->lines);
-    }
-    return 0;
-}
-
-wh_decoded_t wh_dialect_tell(wh_dialect_t *dialect, const char *text, bool *stops, wh_lines_t *lines,
-                             wh_failure_t *failure) {
-    call_t it = {.dialect = dialect, .frame = text, .stops = stops, .lines = lines};
-    *stops = false;
-    lines->count = 0;
-    memset(failure, 0, sizeof *failure);
-    if (!dialect->clients.hears_testers) {
-        return WH_DECODED_NOTHING;
-    }
-    return outcome_of(dialect, call_dialect(dialect, call_tester, &it), failure);
+    return wh_dialect_outcome(dialect, wh_dialect_call(dialect, run_command, &it), failure);
 }

@@ -93,6 +93,35 @@ static int name_as_typed(lua_State *L) {
     return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
 }
 
+static const wh_dialect_t *find_self(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_self_key);
+    const wh_dialect_t *dialect = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return dialect;
+}
+
+/* host.unit(otherwise): the address that this controller was given on its line; without one `otherwise`. */
+static int own_unit(lua_State *L) {
+    const char *unit = find_self(L)->unit;
+    lua_settop(L, 1);
+    if (unit) {
+        lua_pushstring(L, unit);
+    }
+    return 1;
+}
+
+/* host.mechanism(): our name of the robot or station that this controller stands for, as it is typed. */
+static int own_mechanism(lua_State *L) {
+    const wh_dialect_t *dialect = find_self(L);
+    const bool is_robot = dialect->mechanism == WH_MECHANISM_ROBOT;
+    const wh_status_t refusal = is_robot ? WH_STATUS_NO_SUCH_ROBOT : WH_STATUS_NO_SUCH_STATION;
+    if (!dialect->stands_for) {
+        return refuse_by(L, refusal, "this controller stands for several (expected --mechanism)");
+    }
+    lua_pushstring(L, dialect->stands_for);
+    return push_spelt(L, refusal);
+}
+
 /* The number at index 1, which may be a text: digits, a sign and a point, for hosts write no others. */
 static double take_number(lua_State *L) {
     int is_number = 0;
@@ -442,6 +471,8 @@ int wh_dialect_open_host(lua_State *L) {
                                          {"arm", our_arm},
                                          {"door", our_door},
                                          {"typed", name_as_typed},
+                                         {"unit", own_unit},
+                                         {"mechanism", own_mechanism},
                                          {"slot", our_slot},
                                          {"mm", our_mm},
                                          {"degrees", our_degrees},

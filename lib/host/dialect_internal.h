@@ -6,6 +6,9 @@
 #include "../script/reader.h"
 #include "dialect.h"
 
+/* Runs protected, with the dialect as its argument: reads the table that its file has returned. */
+int wh_dialect_read(lua_State *L);
+
 /* Reads the field `framing` of the dialect's table. */
 void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
 
@@ -23,6 +26,35 @@ bool wh_dialect_is_testers(const char *path);
 
 /* The tester's own dialect as it is built in; null: the path is a file's. */
 const wh_embedded_t *wh_dialect_find_embedded(const char *path);
+
+/* A call of one function, and its result. */
+typedef struct {
+    wh_dialect_t *dialect;
+    const wh_client_t *client;
+    const char *frame;
+    size_t size;
+    char *unit;
+    bool *stops;
+    wh_now_t *ask;
+    void *user;
+    wh_request_t *request;
+    wh_lines_t *lines;
+    wh_encoder_t encoder;
+    const wh_told_t *told;
+} wh_dialect_call_t;
+
+/* Calls with a fresh budget. False: it raised, and the dialect's `message` says what. */
+bool wh_dialect_call(wh_dialect_t *dialect, lua_CFunction function, wh_dialect_call_t *argument);
+
+/* The outcome of a call: a request, or refused, or a mistake. */
+wh_decoded_t wh_dialect_outcome(wh_dialect_t *dialect, bool done, wh_failure_t *failure);
+
+/* Pushes { port = , number = }. */
+void wh_dialect_push_client(lua_State *L, const wh_client_t *client);
+
+/* Makes the dialect's text of the value at index 2; nil: none. `function` names it in messages. */
+void wh_dialect_take_text(lua_State *L, const wh_dialect_call_t *it, const char *function);
+void wh_dialect_drop_text(wh_dialect_t *dialect);
 
 /* Sets the global table `known` of the dialect of a tester: `kinds` of events and names of `errors`, both in
  * their order, and meant(word, names), which returns "; did you mean NAME?", or "". */

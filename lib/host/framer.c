@@ -6,8 +6,8 @@
 /* ---------------------------------------------------------------------------------------- what a line is */
 
 const char *wh_frame_kind_name(wh_frame_kind_t kind) {
-    static const char *const names[WH_FRAME_KINDS] = {"none",    "good",  "too long", "no end",
-                                                      "timeout", "short", "bad sum",  "garbage"};
+    static const char *const names[WH_FRAME_KINDS] = {"none",  "good",    "too long", "no end",    "timeout",
+                                                      "short", "bad sum", "garbage",  "bad length"};
     return (unsigned)kind < WH_FRAME_KINDS ? names[kind] : "unknown";
 }
 
@@ -68,15 +68,18 @@ static void settle_line(wh_framer_t *framer) {
 static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *sum, const uint8_t *plain,
                                  size_t size) {
     const wh_framing_t *framing = &framer->framing;
+    const unsigned base = framing->sums_as_bytes ? 256 : 16;
     bool is_good = memcmp(sum, framing->separator.bytes, framing->separator.size) == 0;
     unsigned told = 0;
-    for (size_t i = 0; i < wh_framing_digits(framing); ++i) {
-        const unsigned digit = wh_framing_digit(sum[framing->separator.size + i]);
-        is_good = is_good && digit < 16;
-        told = 16 * told + digit;
+    for (size_t i = 0; i < wh_framing_sum_size(framing); ++i) {
+        const uint8_t byte = sum[framing->separator.size + i];
+        const unsigned digit = framing->sums_as_bytes ? byte : wh_framing_digit(byte);
+        is_good = is_good && digit < base;
+        told = base * told + digit;
     }
-    return is_good && told == wh_framing_sum(framing, framer->start, plain, size) ? WH_FRAME_GOOD
-                                                                                  : WH_FRAME_BAD_SUM;
+    const uint16_t sum_of_all =
+        wh_framing_sum_over(framing, framer->start, framer->line + start_size(framer), plain, size);
+    return is_good && told == sum_of_all ? WH_FRAME_GOOD : WH_FRAME_BAD_SUM;
 }
 
 /* Finds a body without its escapes. Returns its size. */
@@ -94,14 +97,15 @@ static size_t find_plain(wh_framer_t *framer, const uint8_t *body, size_t size, 
     return count;
 }
 
-/* The line has come to an end of `end_size` bytes. */
+/* The line has come to an end of `end_size` bytes, or to the sum behind it. */
 static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
-    const size_t from = start_size(framer);
-    const size_t digits = wh_framing_digits(framing);
+    const size_t from = start_size(framer) + framing->length.size;
+    const size_t digits = wh_framing_sum_size(framing);
     const size_t around = digits > 0 ? framing->separator.size + digits : 0;
     const size_t content = framer->size - from - end_size;
     const size_t room = content < around ? 0 : content - around;
+    const size_t sum = from + room + (framing->sum_is_behind ? end_size : 0);
     const uint8_t *plain = NULL;
     const size_t size = find_plain(framer, framer->line + from, room, &plain);
     wh_frame_kind_t kind = WH_FRAME_GOOD;
@@ -110,7 +114,7 @@ static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) 
     } else if (content < around || size < framing->shortest) {
         kind = WH_FRAME_SHORT;
     } else if (around > 0) {
-        kind = judge_sum(framer, framer->line + from + room, plain, size);
+        kind = judge_sum(framer, framer->line + sum, plain, size);
     }
     tell_frame(framer, kind, framer->size, 0, framing->start_count, frame);
     if (kind == WH_FRAME_GOOD) {
@@ -164,6 +168,13 @@ static void begin_line(wh_framer_t *framer, size_t start, wh_frame_t *frame) {
     }
 }
 
+/* The frame cannot be so long, or so short: this is told at once. */
+static void refuse_length(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
+    tell_frame(framer, kind, framer->size - 1, 0, framer->framing.start_count, frame);
+    frame->is_over = true;
+    framer->dropped = 1;
+}
+
 /* An end has come. */
 static void take_end(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
@@ -173,6 +184,12 @@ static void take_end(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     } else if (framing->skips_empty && framer->size == size) {
         framer->counters.passed += size;
         framer->size = 0;
+    } else if (framing->sum_is_behind && !is_garbage(framer)) {
+        framer->whole = framer->size + wh_framing_sum_size(framing);
+        if (framer->whole > framing->longest) {
+            framer->whole = 0;
+            refuse_length(framer, WH_FRAME_TOO_LONG, frame);
+        }
     } else {
         judge_line(framer, size, frame);
     }
@@ -193,6 +210,50 @@ static void tell_overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     }
 }
 
+/* All bytes of a frame are there that its length counts. */
+static void judge_counted(wh_framer_t *framer, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    const size_t size = framing->end_count > 0 ? framing->ends[0].size : 0;
+    if (size > 0 && memcmp(framer->line + framer->size - size, framing->ends[0].bytes, size) != 0) {
+        tell_frame(framer, WH_FRAME_NO_END, framer->size, 0, framing->start_count, frame);
+    } else {
+        judge_line(framer, size, frame);
+    }
+}
+
+/* A byte was added behind the end of a line. */
+static void await_sum(wh_framer_t *framer, wh_frame_t *frame) {
+    if (framer->size == framer->whole) {
+        framer->whole = 0;
+        judge_line(framer, framer->framing.ends[0].size, frame);
+    }
+}
+
+/* A byte was added to a line whose frames tell their length. */
+static void count_byte(wh_framer_t *framer, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    if (framer->dropped > 0 || is_garbage(framer)) {
+        const size_t start = mark_at_end(framer, framing->starts, framing->start_count, 0);
+        if (start < framing->start_count) {
+            begin_line(framer, start, frame);
+        } else if (framer->size > framing->longest) {
+            tell_overflow(framer, framing->end_count, frame);
+        }
+        return;
+    }
+    const size_t head = start_size(framer) + framing->length.size;
+    if (framer->size == head) {
+        framer->whole = wh_framing_whole(framing, start_size(framer), framer->line + start_size(framer));
+        if (framer->whole == 0 || framer->whole > framing->longest) {
+            refuse_length(framer, framer->whole == 0 ? WH_FRAME_BAD_LENGTH : WH_FRAME_TOO_LONG, frame);
+            return;
+        }
+    }
+    if (framer->size >= head && framer->size == framer->whole) {
+        judge_counted(framer, frame);
+    }
+}
+
 /* True if a byte may be a mark's last one: it is, and no escape stands before it. */
 static bool may_be_mark(wh_framer_t *framer, uint8_t byte) {
     const bool is_plain = framer->is_escaped;
@@ -210,6 +271,14 @@ static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
         }
     }
     framer->line[framer->size++] = byte;
+    if (framing->length.size > 0) {
+        count_byte(framer, frame);
+        return;
+    }
+    if (framer->whole > 0) {
+        await_sum(framer, frame);
+        return;
+    }
     size_t start = framing->start_count;
     size_t end = framing->end_count;
     if (may_be_mark(framer, byte)) {
@@ -237,6 +306,7 @@ static bool is_late(const wh_framer_t *framer, int64_t time_us) {
 /* Gives up the line that was begun, if there is one. */
 static void give_up_line(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
     framer->is_escaped = false;
+    framer->whole = 0;
     if (framer->dropped > 0) {
         end_drop(framer, 0, framer->framing.start_count);
     } else if (framer->size > 0) {

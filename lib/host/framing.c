@@ -31,11 +31,11 @@ unsigned wh_framing_digit(uint8_t byte) {
     return found ? (unsigned)(found - digits) % 16U : 16U;
 }
 
-size_t wh_framing_digits(const wh_framing_t *framing) {
+size_t wh_framing_sum_size(const wh_framing_t *framing) {
     if (framing->sum == WH_SUM_NONE) {
         return 0;
     }
-    return framing->sum == WH_SUM_CRC16 ? 4 : 2;
+    return (framing->sum == WH_SUM_CRC16 ? 4U : 2U) / (framing->sums_as_bytes ? 2U : 1U);
 }
 
 /* A byte that may stand in one of several places alone. */
@@ -190,7 +190,7 @@ static size_t most_around(const wh_framing_t *framing) {
     for (size_t i = 0; i < framing->end_count; ++i) {
         end = framing->ends[i].size > end ? framing->ends[i].size : end;
     }
-    return start + framing->separator.size + wh_framing_digits(framing) + end;
+    return start + framing->length.size + framing->separator.size + wh_framing_sum_size(framing) + end;
 }
 
 static bool check_numbers(const wh_framing_t *framing, char *problem) {
@@ -199,7 +199,9 @@ static bool check_numbers(const wh_framing_t *framing, char *problem) {
         long long value, least, most;
     } numbers[] = {
         {"starts", (long long)framing->start_count, 0, WH_FRAMING_MARKS},
-        {"ends", (long long)framing->end_count, 1, WH_FRAMING_MARKS},
+        {"ends", (long long)framing->end_count, framing->length.size > 0 ? 0 : 1,
+         framing->length.size > 0 ? 1 : WH_FRAMING_MARKS},
+        {"length.size", (long long)framing->length.size, 0, WH_FRAMING_LENGTH},
         {"sum", (long long)framing->sum, 0, WH_SUM_CRC16},
         {"longest", (long long)framing->longest, WH_FRAMING_LEAST, WH_FRAMING_LINE},
         {"timeout", framing->timeout_us, 0, WH_FRAMING_TIMEOUT_US},
@@ -213,17 +215,100 @@ static bool check_numbers(const wh_framing_t *framing, char *problem) {
     return true;
 }
 
+/* With a length only a pause brings a reader back that has lost its place. */
+static bool check_length(const wh_framing_t *framing, char *problem) {
+    const wh_framing_length_t *length = &framing->length;
+    const char *wrong = NULL;
+    if (length->size == 0 && framing->sums_length) {
+        wrong = "sums_length: expected a length";
+    } else if (length->size == 0 && framing->sums_as_bytes && !framing->sum_is_behind) {
+        wrong = "sum: one of bytes (expected it beside a length, or behind the end)";
+    } else if (length->size > 0 && length->base != 10 && length->base != 16 && length->base != 256) {
+        wrong = "length: a base of its digits (expected 10, 16 or 256)";
+    } else if (length->size > 0 && framing->timeout_us == 0) {
+        wrong = "timeout: 0 (expected above 0 beside a length)";
+    } else if (length->size > 0 && framing->has_escape) {
+        wrong = "escape: expected none beside a length";
+    } else if (framing->sum == WH_SUM_NONE &&
+               (framing->sums_as_bytes || framing->sums_length || framing->sum_is_behind)) {
+        wrong = "sum: none (expected another one, for something says more of it)";
+    } else if (framing->sums_end && !framing->sum_is_behind) {
+        wrong = "sums_end: expected a sum behind the end";
+    } else if (framing->sum_is_behind &&
+               (length->size > 0 || framing->end_count > 1 || framing->separator.size > 0)) {
+        wrong = "sum: one behind the end (expected no length, one end, no separator)";
+    }
+    (void)snprintf(problem, WH_FRAMING_PROBLEM_BYTES, "%s", wrong ? wrong : "");
+    return !wrong;
+}
+
 bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PROBLEM_BYTES]) {
     if (!check_numbers(framing, problem) ||
         !check_marks(framing, framing->starts, framing->start_count, "start", problem) ||
         !check_marks(framing, framing->ends, framing->end_count, "end", problem) ||
         !check_starts(framing, problem) || !check_ends(framing, problem) ||
-        !check_separator(framing, problem) || !check_escape(framing, problem)) {
+        !check_separator(framing, problem) || !check_escape(framing, problem) ||
+        !check_length(framing, problem)) {
         return false;
     }
     const size_t room = framing->longest - most_around(framing);
     return framing->shortest <= room ||
            refuse_number(problem, "shortest", (long long)framing->shortest, 0, (long long)room);
+}
+
+/* -------------------------------------------------------------------------------------------- the length */
+
+/* Bytes of a frame behind its body. */
+static size_t bytes_behind(const wh_framing_t *framing) {
+    return framing->separator.size + wh_framing_sum_size(framing) +
+           (framing->end_count > 0 ? framing->ends[0].size : 0);
+}
+
+/* The bytes of a frame that its length does not count. */
+static size_t uncounted(const wh_framing_t *framing, size_t start_size) {
+    const size_t end = framing->end_count > 0 ? framing->ends[0].size : 0;
+    const size_t head = start_size + framing->length.size;
+    if (framing->length.counts == WH_LENGTH_FRAME) {
+        return 0;
+    }
+    return head + (framing->length.counts == WH_LENGTH_REST ? end : bytes_behind(framing));
+}
+
+/* The digit of a byte; the base itself: it is none. */
+static unsigned digit_of(const wh_framing_length_t *length, uint8_t byte) {
+    if (length->base == 256) {
+        return byte;
+    }
+    const unsigned digit = wh_framing_digit(byte);
+    return digit < length->base ? digit : length->base;
+}
+
+size_t wh_framing_whole(const wh_framing_t *framing, size_t start_size, const uint8_t *bytes) {
+    const wh_framing_length_t *length = &framing->length;
+    size_t value = 0;
+    for (size_t i = 0; i < length->size; ++i) {
+        const unsigned digit = digit_of(length, bytes[length->low_first ? length->size - 1 - i : i]);
+        if (digit == length->base) {
+            return 0;
+        }
+        value = value * length->base + digit;
+    }
+    value += uncounted(framing, start_size);
+    return value < start_size + length->size + bytes_behind(framing) ? 0 : value;
+}
+
+/* Writes the length of a frame around a body of `size` bytes. False if it has too few digits for that. */
+static bool write_length(const wh_framing_t *framing, size_t start, size_t size, uint8_t *bytes) {
+    static const char digits[] = "0123456789ABCDEF";
+    const wh_framing_length_t *length = &framing->length;
+    const size_t start_size = start < framing->start_count ? framing->starts[start].size : 0;
+    size_t value = start_size + length->size + size + bytes_behind(framing) - uncounted(framing, start_size);
+    for (size_t i = 0; i < length->size; ++i, value /= length->base) {
+        const size_t digit = value % length->base;
+        bytes[length->low_first ? i : length->size - 1 - i] =
+            length->base == 256 ? (uint8_t)digit : (uint8_t)digits[digit];
+    }
+    return length->size == 0 || value == 0;
 }
 
 /* ----------------------------------------------------------------------------------------------- the sum */
@@ -247,19 +332,32 @@ static unsigned sum_bytes(wh_sum_kind_t kind, unsigned sum, const uint8_t *bytes
     return sum;
 }
 
-uint16_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size) {
+uint16_t wh_framing_sum_over(const wh_framing_t *framing, size_t start, const uint8_t *length,
+                             const uint8_t *body, size_t size) {
     unsigned sum = framing->sum == WH_SUM_CRC16 ? 0xFFFFU : 0;
     if (framing->sums_start && start < framing->start_count) {
         sum = sum_bytes(framing->sum, sum, framing->starts[start].bytes, framing->starts[start].size);
+    }
+    if (framing->sums_length) {
+        sum = sum_bytes(framing->sum, sum, length, framing->length.size);
     }
     sum = sum_bytes(framing->sum, sum, body, size);
     if (framing->sums_separator) {
         sum = sum_bytes(framing->sum, sum, framing->separator.bytes, framing->separator.size);
     }
+    if (framing->sums_end) {
+        sum = sum_bytes(framing->sum, sum, framing->ends[0].bytes, framing->ends[0].size);
+    }
     if (framing->sum == WH_SUM_CRC16) {
         return (uint16_t)sum;
     }
     return (uint16_t)((framing->sum == WH_SUM_COMPLEMENT ? 0U - sum : sum) & 0xFFU);
+}
+
+uint16_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size) {
+    uint8_t length[WH_FRAMING_LENGTH] = {0};
+    (void)write_length(framing, start, size, length);
+    return wh_framing_sum_over(framing, start, length, body, size);
 }
 
 /* ----------------------------------------------------------------------------------------------- writing */
@@ -304,9 +402,22 @@ static bool reads_back(const wh_framing_t *framing, const uint8_t *bytes, size_t
     return frame.kind == WH_FRAME_NONE && framer.size == 0;
 }
 
+/* Appends the sum, with the separator before it. */
+static size_t append_sum(const wh_framing_t *framing, uint8_t *to, size_t at, uint16_t sum) {
+    const size_t size = wh_framing_sum_size(framing);
+    const uint8_t bytes[2] = {(uint8_t)(sum >> 8), (uint8_t)sum};
+    char digits[8];
+    (void)snprintf(digits, sizeof digits, "%0*X", (int)size, sum);
+    at = append_bytes(to, at, framing->separator.bytes, framing->separator.size);
+    return framing->sums_as_bytes ? append_bytes(to, at, bytes + 2 - size, size)
+                                  : append_bytes(to, at, digits, size);
+}
+
 size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
                          uint8_t frame[WH_FRAMING_LINE]) {
-    if (size > framing->longest || (framing->start_count > 0 && start >= framing->start_count)) {
+    uint8_t told[WH_FRAMING_LENGTH];
+    if (size > framing->longest || (framing->start_count > 0 && start >= framing->start_count) ||
+        !write_length(framing, start, size, told)) {
         return 0;
     }
     uint8_t bytes[WH_FRAMING_LINE + 4 * WH_FRAMING_MARK];
@@ -314,15 +425,18 @@ size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_
     if (framing->start_count > 0) {
         length = append_bytes(bytes, length, framing->starts[start].bytes, framing->starts[start].size);
     }
+    length = append_bytes(bytes, length, told, framing->length.size);
     length = append_body(framing, bytes, length, body, size);
-    if (framing->sum != WH_SUM_NONE) {
-        char digits[8];
-        const size_t count = wh_framing_digits(framing);
-        (void)snprintf(digits, sizeof digits, "%0*X", (int)count, wh_framing_sum(framing, start, body, size));
-        length = append_bytes(bytes, length, framing->separator.bytes, framing->separator.size);
-        length = append_bytes(bytes, length, digits, count);
+    const uint16_t sum = wh_framing_sum_over(framing, start, told, body, size);
+    if (framing->sum != WH_SUM_NONE && !framing->sum_is_behind) {
+        length = append_sum(framing, bytes, length, sum);
     }
-    length = append_bytes(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
+    if (framing->end_count > 0) {
+        length = append_bytes(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
+    }
+    if (framing->sum_is_behind) {
+        length = append_sum(framing, bytes, length, sum);
+    }
     if (length > framing->longest || !reads_back(framing, bytes, length, body, size)) {
         return 0;
     }

@@ -5,6 +5,11 @@
  * frame before it lost its end, so a body holds no start. Each bad frame is handed on as such, so the reader
  * knows which mistake it was. The checks are in this order: length, end, check sum.
  *
+ * The sum may stand behind the end instead: what comes there is no mark.
+ *
+ * A frame may tell its length behind the start: then its body holds any bytes, and no mark is looked for in
+ * it. Behind a length that cannot be, bytes are passed over up to a start or a pause.
+ *
  * The result of a framer depends on the bytes and their times alone, never on how they were cut into pieces.
  * Nothing is allocated. Not for two threads at once. */
 #ifndef WH_HOST_FRAMING_H
@@ -20,6 +25,7 @@
 #define WH_FRAMING_LEAST 32
 #define WH_FRAMING_MARKS 4
 #define WH_FRAMING_MARK 8
+#define WH_FRAMING_LENGTH 4 /* the most bytes of a length */
 
 /* The longest time between two bytes of a frame that can be asked for: an hour. */
 #define WH_FRAMING_TIMEOUT_US 3600000000
@@ -44,6 +50,17 @@ typedef enum {
     WH_SUM_CRC16       /* x^16 + x^15 + x^2 + 1, bits from the lowest on, begun with FFFF */
 } wh_sum_kind_t;
 
+/* A length counts the body; all behind it, but for the end; or the whole frame, with the length. */
+typedef enum { WH_LENGTH_BODY, WH_LENGTH_REST, WH_LENGTH_FRAME } wh_length_counts_t;
+
+/* The length of a frame, behind its start. */
+typedef struct {
+    size_t size;   /* its own bytes, 1 to 4; 0: there is none */
+    unsigned base; /* 10 or 16: digits; 256: bytes, the highest first, or the lowest if `low_first` */
+    bool low_first;
+    wh_length_counts_t counts;
+} wh_framing_length_t;
+
 /* How one direction of a line is framed. The body counts into the sum; the fields below say what else does.
  * Digits are written in capitals and read in either case. */
 typedef struct {
@@ -52,12 +69,18 @@ typedef struct {
     wh_framing_mark_t ends[WH_FRAMING_MARKS];   /* any of them ends a frame, the first is written; an end may
                                                  * be another end less its last byte; that byte is passed over
                                                  * if it comes next: "\r" and "\r\n" */
-    size_t end_count;                           /* at least 1 */
+    size_t end_count;                           /* at least 1; with a length 0 or 1 */
+    wh_framing_length_t length;                 /* with it there is no escape, but a time-out */
     wh_sum_kind_t sum;
+    bool
+        sums_as_bytes; /* the sum is one byte, or two of a CRC, the high one first: with a length, or behind the end */
     wh_framing_mark_t separator; /* before the digits, such as ","; no part of the body */
     bool sums_start;             /* the start counts into the sum */
     bool sums_separator;         /* the separator does */
-    bool skips_empty;            /* an end alone is no frame: blank lines */
+    bool sum_is_behind; /* the sum stands behind the end, without a separator; then there is one end, */
+    bool sums_end;      /* which counts into it */
+    bool sums_length;   /* the length does, as it stands there */
+    bool skips_empty;   /* an end alone is no frame: blank lines */
     bool has_escape;    /* a byte of the body that is a start, an end or `escape` has that before it; */
     uint8_t escape;     /* then all marks are of one byte; sums count bytes without escapes */
     size_t shortest;    /* the fewest bytes of a body */
@@ -73,11 +96,12 @@ wh_framing_t wh_framing_default(void);
  * sum, none is a hex digit. */
 bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PROBLEM_BYTES]);
 
-/* The digits' value over what counts of a frame: the start's bytes, the body and the separator. */
+/* The sum over what counts of a frame: the start's bytes, the length, the body and the separator. */
 uint16_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size);
 
 /* Writes a whole frame with start number `start` (ignored if there are none) around a body. Returns its size.
- * 0, and nothing is written, if there is no such start, the frame would be longer than `longest`, the body is
+ * 0, and nothing is written, if there is no such start, the frame would be longer than `longest` or than its
+ * length can tell, the body is
  * shorter than `shortest`, or a framer would not read this body back: it holds a start or an end without
  * `has_escape`, or is empty and `skips_empty`. Cost: linear in size, about 20 ns a byte. */
 size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
@@ -86,15 +110,17 @@ size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_
 /* The kind of a frame. Bytes behind a frame that is too long, up to an end, a start or a time-out, are passed
  * over. */
 typedef enum {
-    WH_FRAME_NONE,     /* no frame yet */
-    WH_FRAME_GOOD,     /* whole */
-    WH_FRAME_TOO_LONG, /* over `longest`: told at once */
-    WH_FRAME_NO_END,   /* a start, or the line's end, came before the frame's end */
-    WH_FRAME_TIMEOUT,  /* nothing came for `timeout_us` before the frame's end */
-    WH_FRAME_SHORT,    /* the body, or what should be the sum, has too few bytes */
-    WH_FRAME_BAD_SUM,  /* the sum is wrong, or is not as many hex digits */
-    WH_FRAME_GARBAGE,  /* bytes without a start, up to an end, a start, a time-out, or too many of them */
-    WH_FRAME_KINDS     /* how many there are */
+    WH_FRAME_NONE,       /* no frame yet */
+    WH_FRAME_GOOD,       /* whole */
+    WH_FRAME_TOO_LONG,   /* over `longest`: told at once */
+    WH_FRAME_NO_END,     /* a start, or the line's end, came before the frame's end; or none stands where the
+                        * length says */
+    WH_FRAME_TIMEOUT,    /* nothing came for `timeout_us` before the frame's end */
+    WH_FRAME_SHORT,      /* the body, or what should be the sum, has too few bytes */
+    WH_FRAME_BAD_SUM,    /* the sum is wrong, or is not as many hex digits */
+    WH_FRAME_GARBAGE,    /* bytes without a start, up to an end, a start, a time-out, or too many of them */
+    WH_FRAME_BAD_LENGTH, /* the length has other bytes than digits, or is less than a frame has */
+    WH_FRAME_KINDS       /* how many there are */
 } wh_frame_kind_t;
 
 /* The name of a kind, as in "too long". Never null. */
@@ -107,10 +133,11 @@ typedef struct {
     int64_t first_us;
     int64_t last_us;      /* when its last byte came */
     const uint8_t *bytes; /* as they came, with start, sum and end; of a frame that is too long the first
-                           * `longest` */
+                           * `longest`, or those before the last one of its length */
     size_t size;
-    bool is_over; /* too long, or garbage of that length: the byte that was too many stands behind them */
-    const uint8_t *body; /* of a good frame, without start, escapes, sum and end; else as `bytes` */
+    bool is_over; /* too long, garbage of that length, or a bad length: the byte that showed it stands behind
+                   * them */
+    const uint8_t *body; /* of a good frame, without start, length, escapes, sum and end; else as `bytes` */
     size_t body_size;
     size_t start; /* of frames with a start, which one; else 0 */
 } wh_frame_t;
@@ -136,6 +163,8 @@ typedef struct {
     bool told;                      /* the line was told of: with the next call it leaves, */
     size_t keeps;                   /* but without this number of last bytes, */
     size_t next;                    /* which are this start */
+    size_t
+        whole; /* with a length, or a sum behind the end: the bytes of the frame, once that is known; else 0 */
     size_t dropped;   /* bytes behind a frame that was too long; `line` then has only the last bytes */
     int passes;       /* a byte that is passed over if it comes next; -1: none */
     int64_t first_us; /* of the line */

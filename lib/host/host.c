@@ -11,6 +11,7 @@
 #include "../record/record.h"
 #include "../text/array.h"
 #include "conditions.h"
+#include "events.h"
 #include "journal.h"
 #include "line.h"
 #include "playing.h"
@@ -64,7 +65,9 @@ static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
     for (size_t i = 0; i < host->count; ++i) {
         const int64_t at = wh_controller_due(host->controllers[i]);
         due = at < due ? at : due;
-        count += wh_port_polls(&host->controllers[i]->line.port, polls + count);
+        if (host->controllers[i]->line.is_open) {
+            count += wh_port_polls(&host->controllers[i]->line.port, polls + count);
+        }
     }
     const int64_t wait = due - wh_host_now(host);
     const struct timespec time = {wait > 0 ? (time_t)(wait / 1000000) : 0,
@@ -124,58 +127,6 @@ static bool wait_held(wh_host_t *host) {
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-static void tell_events(wh_host_t *host, const wh_state_t *state) {
-    for (size_t e = 0; e < state->event_count; ++e) {
-        const wh_event_kind_t kind = state->events[e].kind;
-        host->seen.complaint = wh_record_is_complaint(kind) ? kind : host->seen.complaint;
-        for (size_t i = 0; i < host->count; ++i) {
-            wh_controller_event(host->controllers[i], &state->events[e], (double)state->utime / 1e6);
-        }
-    }
-}
-
-/* Tells which sensors and valves have changed since the slice before. */
-static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_state_t *state) {
-    uint32_t valves = 0;
-    for (size_t g = 0; g < command->gripper_count; ++g) {
-        valves |= command->grippers[g].valve == WH_VALVE_OPEN ? 1U << g : 0;
-    }
-    for (size_t g = 0; g < command->gripper_count; ++g) {
-        if (((valves ^ host->seen.valves) >> g & 1U) != 0) {
-            wh_host_tell_change(host, WH_HOST_VALVE, g, (int)(valves >> g & 1U));
-        }
-        if (((state->sensors ^ host->seen.sensors) >> g & 1U) != 0) {
-            wh_host_tell_change(host, WH_HOST_SENSOR, g, (int)(state->sensors >> g & 1U));
-        }
-    }
-    host->seen.valves = valves;
-    host->seen.sensors = state->sensors;
-}
-
-static uint32_t find_doors(const wh_host_t *host, const char *word) {
-    const wh_mcs_t *mcs = &host->session->mcs;
-    uint32_t doors = 0;
-    for (size_t d = 0; d < wh_mcs_layout(mcs)->machine.door_count; ++d) {
-        doors |= strcmp(wh_mcs_door_word(mcs, d), word) == 0 ? 1U << d : 0;
-    }
-    return doors;
-}
-
-/* Tells which doors have come to an end, or have left it. */
-static void tell_doors(wh_host_t *host) {
-    const uint32_t open = find_doors(host, "open");
-    const uint32_t shut = find_doors(host, "shut");
-    const uint32_t changed = (open ^ host->seen.open) | (shut ^ host->seen.shut);
-    for (size_t d = 0; changed >> d != 0; ++d) {
-        if ((changed >> d & 1U) != 0) {
-            const bool stands = ((open | shut) >> d & 1U) != 0;
-            wh_host_tell_door(host, d, stands ? (int)(open >> d & 1U) : -1);
-        }
-    }
-    host->seen.open = open;
-    host->seen.shut = shut;
-}
-
 /* Serves the ports until the slice's time is over. */
 static void serve_slice(wh_host_t *host) {
     const int64_t end = end_of_slice(host);
@@ -203,10 +154,7 @@ static void on_slice(void *user, const wh_command_t *command, const wh_state_t *
     }
     host->clock.lua_us = 0;
     wh_host_heed_clock(host);
-    tell_events(host, state);
-    tell_changes(host, command, state);
-    tell_doors(host);
-    wh_host_tell_modes(host);
+    wh_host_tell_slice(host, command, state);
     wh_host_tell_begun(host);
     serve_slice(host);
 }
@@ -222,7 +170,9 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 }
 
 static void on_begin(void *user, const wh_layout_t *layout) {
-    const wh_host_t *host = user;
+    wh_host_t *host = user;
+    free(host->seen.ports); /* its names were those of the layout before */
+    host->seen.ports = NULL;
     for (size_t i = 0; i < host->count; ++i) { /* they were taken when the ports were opened */
         (void)wh_controller_begin_conditions(host->controllers[i]);
     }
@@ -357,6 +307,8 @@ static bool open_port(wh_controller_t *controller, const wh_host_port_t *asked, 
     if (played) {
         wh_port_open_transcript(&line->port, played, controller->name);
         line->is_open = true;
+    } else if (controller->carrier != controller) {
+        return true;
     } else if (beside) {
         line->is_open = wh_port_open_beside(&line->port, beside, problem);
     } else {
@@ -378,6 +330,7 @@ static wh_controller_t *append_controller(wh_host_t *host, wh_controller_t *lead
     host->controllers[host->count++] = controller;
     controller->host = host;
     controller->leader = leader ? leader : controller;
+    controller->carrier = controller;
     controller->dialect = leader ? leader->dialect : wh_array_new(1, sizeof *controller->dialect);
     controller->mechanism = controller->leader->mechanism;
     controller->role = "";
@@ -438,17 +391,62 @@ static void begin_host(wh_host_t *host) {
     }
 }
 
+static bool refuse_unit(const wh_controller_t *controller, const char *unit, const char *expected) {
+    char text[WH_SANDBOX_MESSAGE_BYTES];
+    (void)snprintf(text, sizeof text, "--unit %.63s: expected %s", unit, expected);
+    wh_dialect_note(controller->dialect, text);
+    return false;
+}
+
+/* Gives the controller its address and, if it shares one, its line. */
+static bool join_line(wh_controller_t *controller, const wh_host_port_t *port) {
+    const wh_host_t *host = controller->host;
+    const wh_dialect_clients_t *clients = &controller->dialect->clients;
+    controller->unit = port->unit;
+    if (!port->unit) {
+        return true;
+    }
+    if (port->unit[0] == '\0' || strlen(port->unit) >= WH_DIALECT_NAME_BYTES) {
+        return refuse_unit(controller, port->unit, "an address of 1 to 63 bytes");
+    }
+    if (!clients->knows_units || clients->port_count > 1 || clients->second == WH_PORT_SHARE) {
+        return refuse_unit(controller, port->unit,
+                           "a dialect with a function `unit_of` and one port that no clients share");
+    }
+    if (!port->shares_line) {
+        return true;
+    }
+    wh_controller_t *carrier = host->count > 1 ? host->controllers[host->count - 2]->carrier : NULL;
+    if (!carrier || !carrier->unit || strcmp(carrier->dialect->path, controller->dialect->path) != 0) {
+        return refuse_unit(
+            controller, port->unit,
+            "a port of its own, or before it a --dialect of this file with a --unit, whose line "
+            "it shares");
+    }
+    for (size_t i = 0; i + 1 < host->count; ++i) {
+        if (host->controllers[i]->carrier == carrier && strcmp(host->controllers[i]->unit, port->unit) == 0) {
+            return refuse_unit(controller, port->unit, "an address that its line does not have yet");
+        }
+    }
+    controller->carrier = carrier;
+    return true;
+}
+
 bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
     begin_host(host);
     wh_controller_t *controller = append_controller(host, NULL);
     ++host->leaders;
     const wh_layout_t *layout = wh_session_layout(host->session);
-    if (!wh_dialect_open(controller->dialect, port->dialect) ||
+    if (!wh_dialect_open(controller->dialect, port->dialect, port->unit) || !join_line(controller, port) ||
         !find_mechanism(controller, port->mechanism) || !is_alone(host, controller) ||
         (layout && !wh_dialect_fits(controller->dialect, layout))) {
         return false;
     }
     wh_dialect_show(controller->dialect, layout);
+    controller->dialect->stands_for = controller->mechanism.name;
+    if (!controller->mechanism.name && layout) {
+        controller->dialect->stands_for = wh_mechanism_only(controller->mechanism.kind, layout);
+    }
     return wh_controller_begin_conditions(controller) &&
            open_ports(controller, port, controller->dialect->clients.ports[0]);
 }
@@ -461,7 +459,7 @@ bool wh_host_add_control(wh_host_t *host, const char *address) {
     ++host->leaders;
     controller->is_tester = true;
     controller->mechanism = wh_mechanism_all(WH_MECHANISM_CELL, layout);
-    if (!wh_dialect_open(controller->dialect, port.dialect)) {
+    if (!wh_dialect_open(controller->dialect, port.dialect, NULL)) {
         return false;
     }
     wh_dialect_show(controller->dialect, layout);
@@ -493,6 +491,8 @@ void wh_host_close(wh_host_t *host) {
     }
     free(host->shown);
     free(host->texts);
+    free(host->seen.ports);
+    host->seen.ports = NULL;
     host->shown = NULL;
     host->texts = NULL;
     host->count = host->leaders = 0;

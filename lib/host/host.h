@@ -29,6 +29,8 @@ typedef struct {
     const char *mechanism; /* a robot or a station; null: as the dialect says, all of its kind */
     const char *address;   /* or a pty's link if `is_pty`; unused where a transcript is played */
     bool is_pty;
+    const char *unit; /* its address on a line of several units; null: the line is its own */
+    bool shares_line; /* its line is that of the dialect before it; it has no address then */
 } wh_host_port_t;
 
 /* Adds a controller, with its port. False, with the reason in `message` of the dialect, which is the last

@@ -41,11 +41,12 @@ wh_sent_frame_t *wh_sent_take_due(wh_sent_t *sent, int64_t now_us) {
 /* A copy of a frame after chaos. True if the copy is whole. */
 static bool enqueue_copy(wh_controller_t *controller, bool is_to_host, const uint8_t *frame, size_t size,
                          const uint8_t *left, size_t length, int64_t due_us) {
+    wh_port_line_t *line = &controller->carrier->line;
     if (is_to_host) {
         note_line(controller, WH_TRANSCRIPT_HEARD, left, length);
         ++controller->line.told;
     }
-    append_frame(is_to_host ? &controller->line.out : &controller->line.in, left, length, due_us);
+    append_frame(is_to_host ? &line->out : &line->in, left, length, due_us);
     return length == size && memcmp(left, frame, size) == 0;
 }
 
@@ -73,19 +74,28 @@ void wh_sent_drop(wh_sent_t *sent) {
 
 /* ------------------------------------------------------------------------------------------------ clients */
 
+static void forget_requests(wh_controller_t *controller) {
+    free(controller->repeat.reply.text);
+    controller->repeat.reply.text = NULL;
+    controller->owed.due_us = INT64_MAX;
+    controller->action.is_left = controller->action.is_there;
+    wh_queue_drop_client(controller);
+}
+
 void wh_controller_forget_client(wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
     (void)wh_framer_init(&controller->line.framer, &controller->dialect->framing);
     (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect->framing);
     wh_sent_drop(&controller->line.in);
     wh_sent_drop(&controller->line.out);
     wh_ring_drop(&controller->line.waiting, controller->line.waiting.count);
-    free(controller->repeat.reply.text);
-    controller->repeat.reply.text = NULL;
-    controller->owed.due_us = INT64_MAX;
     controller->line.has_gone = false;
     controller->line.closes = false;
-    controller->action.is_left = controller->action.is_there;
-    wh_queue_drop_client(controller);
+    for (size_t i = 0; i < host->count; ++i) {
+        if (host->controllers[i]->carrier == controller) {
+            forget_requests(host->controllers[i]);
+        }
+    }
 }
 
 void wh_controller_note_going(wh_controller_t *controller) {
@@ -133,7 +143,8 @@ static void send_paced(wh_controller_t *controller, int64_t now_us) {
     }
 }
 
-void wh_controller_send_due(wh_controller_t *controller, int64_t now_us) {
+void wh_controller_send_due(wh_controller_t *unit, int64_t now_us) {
+    wh_controller_t *controller = unit->carrier;
     for (wh_sent_frame_t *sent = wh_sent_take_due(&controller->line.out, now_us); sent;
          sent = wh_sent_take_due(&controller->line.out, now_us)) {
         send_bytes(controller, sent->bytes, sent->size);

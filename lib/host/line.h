@@ -4,7 +4,7 @@
 
 #include "state.h"
 
-/* Enqueues the copies that chaos leaves of a frame, in either direction. A frame to the host is noted when it
+/* Enqueues the copies that chaos leaves of a frame, in either direction. Units of one line share it. A frame to the host is noted when it
  * is made: a wall clock decides when it arrives. */
 void wh_controller_enqueue(wh_controller_t *controller, bool is_to_host, const uint8_t *bytes, size_t size,
                            int64_t due_us, bool is_acknowledgement);
@@ -23,7 +23,8 @@ void wh_controller_note_port(wh_controller_t *controller, unsigned what);
 /* The last bytes of a client are told before its going. */
 void wh_controller_note_going(wh_controller_t *controller);
 
-/* Another client has come: everything that the last one sent, or was owed, is dropped. */
+/* Another client has come: everything that the last one sent, or was owed, by any unit of the line, is
+ * dropped. */
 void wh_controller_forget_client(wh_controller_t *controller);
 
 #endif

@@ -93,6 +93,20 @@ bool wh_mechanism_find(wh_mechanism_t kind, const char *name, const wh_layout_t 
     return is_found;
 }
 
+const char *wh_mechanism_only(wh_mechanism_t kind, const wh_layout_t *layout) {
+    const char *only = NULL;
+    size_t count = 0;
+    for (size_t i = 0; kind != WH_MECHANISM_CELL; ++i) {
+        const char *name = name_at(kind, layout, i);
+        if (!name) {
+            break;
+        }
+        only = name[0] != '\0' ? name : only;
+        count += name[0] != '\0' ? 1 : 0;
+    }
+    return count == 1 ? only : NULL;
+}
+
 bool wh_mechanisms_clash(const wh_port_mechanism_t *a, const wh_port_mechanism_t *b) {
     if (a->kind == WH_MECHANISM_CELL || b->kind == WH_MECHANISM_CELL) {
         return true;

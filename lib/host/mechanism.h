@@ -32,6 +32,9 @@ wh_port_mechanism_t wh_mechanism_all(wh_mechanism_t kind, const wh_layout_t *lay
 bool wh_mechanism_find(wh_mechanism_t kind, const char *name, const wh_layout_t *layout,
                        wh_port_mechanism_t *mechanism, char problem[WH_MECHANISM_PROBLEM]);
 
+/* The name of the only mechanism of this kind; null: there are several, or none, or it is the whole cell. */
+const char *wh_mechanism_only(wh_mechanism_t kind, const wh_layout_t *layout);
+
 /* True if no port may stand for `a` while another one stands for `b`. */
 bool wh_mechanisms_clash(const wh_port_mechanism_t *a, const wh_port_mechanism_t *b);
 

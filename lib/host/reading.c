@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "../text/clock.h"
+#include "events.h"
 #include "journal.h"
 #include "line.h"
 #include "queue.h"
@@ -19,11 +20,31 @@ static void take_frame(wh_controller_t *controller, const wh_frame_t *frame) {
     wh_controller_take(controller, frame);
 }
 
+/* True if the client of this line waits for an answer of any of its units. */
+static bool line_owes(const wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    bool owes = false;
+    for (size_t i = 0; i < host->count && !owes; ++i) {
+        owes = host->controllers[i]->carrier == controller && wh_controller_owes(host->controllers[i]);
+    }
+    return owes;
+}
+
+/* True if an action of any unit of this line has not ended. */
+static bool line_acts(const wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    bool acts = false;
+    for (size_t i = 0; i < host->count && !acts; ++i) {
+        acts = host->controllers[i]->carrier == controller && host->controllers[i]->action.is_there;
+    }
+    return acts;
+}
+
 /* True if there is time for Lua in this slice, and no accepted action has yet to begin: frames behind such an
  * action are heard while it runs. Where answers come in order, nothing is heard before the last is told. */
 static bool may_hear(const wh_controller_t *controller) {
     const wh_host_t *host = controller->host;
-    const bool is_parked = controller->dialect->clients.in_order && wh_controller_owes(controller);
+    const bool is_parked = controller->dialect->clients.in_order && line_owes(controller);
     return host->clock.lua_us < WH_HOST_LUA_US && (host->running || !wh_host_next_action(host)) &&
            !is_parked && !controller->line.closes;
 }
@@ -92,7 +113,7 @@ static void read_frames(wh_controller_t *controller, int64_t now_us) {
 
 /* Nothing is on its way to the client or from it, and no answer is to come. */
 static bool owes_nothing(const wh_controller_t *controller) {
-    return !controller->action.is_there && !wh_controller_owes(controller) && !controller->line.has_gone &&
+    return !line_acts(controller) && !line_owes(controller) && !controller->line.has_gone &&
            !controller->line.out.first && !controller->line.in.first && controller->line.waiting.count == 0;
 }
 
@@ -108,10 +129,9 @@ static bool frame_again(wh_controller_t *controller, const wh_transcript_entry_t
            wh_framer_finish(&controller->line.framer, frame);
 }
 
-/* Hears the frame of a transcript's entry. The bytes behind a line that was too long have no entry: an end
- * stands for them. */
+/* Hears the frame of a transcript's entry. The bytes behind a line that was too long have no entry: the line
+ * ends there. */
 static void hear_entry(wh_controller_t *controller, const wh_transcript_entry_t *entry) {
-    const wh_framing_mark_t *end = &controller->dialect->framing.ends[0];
     size_t at = 0;
     wh_frame_t frame = {.kind = WH_FRAME_NONE};
     if (!frame_again(controller, entry, &at, &frame)) {
@@ -124,19 +144,29 @@ static void hear_entry(wh_controller_t *controller, const wh_transcript_entry_t 
         at += wh_framer_feed(&controller->line.framer, entry->bytes + at, entry->size - at, now, &frame);
     }
     if (is_over) {
-        (void)wh_framer_feed(&controller->line.framer, end->bytes, end->size, now, &frame);
+        (void)wh_framer_finish(&controller->line.framer, &frame);
     }
 }
 
-/* Tells the dialect of a client that has gone, and of one that has come. */
+/* Tells the dialect of each unit of a line of a client that has gone, and of one that has come. */
 static void heed_clients(wh_controller_t *controller, bool has_come) {
-    if (controller->line.is_parting) {
-        controller->line.is_parting = false;
-        wh_controller_part(controller);
+    const wh_host_t *host = controller->host;
+    const bool is_parting = controller->line.is_parting;
+    controller->line.is_parting = false;
+    for (size_t i = 0; i < host->count && is_parting; ++i) {
+        if (host->controllers[i]->carrier == controller) {
+            wh_controller_part(host->controllers[i]);
+        }
     }
-    if (has_come) {
-        controller->line.client = ++controller->leader->guests;
-        wh_controller_greet(controller);
+    if (is_parting) {
+        wh_host_tell_modes(controller->host);
+    }
+    for (size_t i = 0; i < host->count && has_come; ++i) {
+        wh_controller_t *unit = host->controllers[i];
+        if (unit->carrier == controller) {
+            unit->line.client = ++unit->leader->guests;
+            wh_controller_greet(unit);
+        }
     }
 }
 
@@ -187,7 +217,7 @@ static unsigned serve_port(wh_controller_t *controller) {
 static void hang_up(wh_controller_t *controller) {
     wh_port_line_t *line = &controller->line;
     if (line->closes && line->is_open && !line->out.first && line->waiting.count == 0 &&
-        !wh_controller_owes(controller)) {
+        !line_owes(controller)) {
         wh_controller_note_port(controller, wh_port_hang_up(&line->port));
     }
 }

@@ -8,6 +8,7 @@
 
 #include "actions.h"
 #include "conditions.h"
+#include "events.h"
 #include "journal.h"
 #include "queue.h"
 #include "status.h"
@@ -341,7 +342,7 @@ static void carry_out(wh_controller_t *controller, wh_request_t *request) {
 static void take_request(wh_controller_t *controller, wh_request_t *request) {
     const wh_dialect_command_t *command = request->command;
     const bool is_idle = !wh_controller_acting(controller) && !controller->leader->pending;
-    controller->line.closes = controller->line.closes || command->closes;
+    controller->carrier->line.closes = controller->carrier->line.closes || command->closes;
     if (!does_command(controller, command)) {
         wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, command->name);
     } else if (command->when == WH_WHEN_IDLE && !is_idle) {
@@ -414,16 +415,11 @@ static void take_decoded(wh_controller_t *controller, const wh_frame_t *frame, w
     controller->repeat.remembers = false;
 }
 
-void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame) {
+/* Takes a good frame. */
+static void take_good(wh_controller_t *controller, const wh_frame_t *frame) {
     wh_request_t request;
     wh_failure_t failure;
     const int64_t begin_us = wh_host_now(controller->host);
-    if (frame->kind != WH_FRAME_GOOD) {
-        const wh_told_t told = {.reason = wh_frame_kind_name(frame->kind)};
-        ++controller->counters.bad;
-        wh_controller_tell(controller, WH_ENCODE_BAD, &told, true);
-        return;
-    }
     ++controller->counters.frames;
     const wh_client_t client = {controller->role, controller->line.client};
     const wh_decoded_t decoded = wh_dialect_decode(controller->dialect, &client, (const char *)frame->body,
@@ -431,6 +427,34 @@ void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame) {
     take_decoded(controller, frame, decoded, &request, &failure);
     wh_dialect_forget(controller->dialect, &request);
     controller->host->clock.lua_us += wh_host_now(controller->host) - begin_us;
+}
+
+/* The unit of this line that the frame is for; null: it has none of that address. */
+static wh_controller_t *find_unit(wh_controller_t *carrier, const wh_frame_t *frame) {
+    const wh_host_t *host = carrier->host;
+    char unit[WH_DIALECT_NAME_BYTES];
+    if (!wh_dialect_unit_of(carrier->dialect, (const char *)frame->body, frame->body_size, unit)) {
+        wh_controller_say_mistake(carrier);
+    }
+    for (size_t i = 0; i < host->count; ++i) {
+        if (host->controllers[i]->carrier == carrier && strcmp(host->controllers[i]->unit, unit) == 0) {
+            return host->controllers[i];
+        }
+    }
+    return NULL;
+}
+
+void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame) {
+    const wh_told_t told = {.reason = wh_frame_kind_name(frame->kind)};
+    const bool is_good = frame->kind == WH_FRAME_GOOD;
+    wh_controller_t *unit = is_good && controller->unit ? find_unit(controller, frame) : controller;
+    controller->counters.bad += is_good ? 0 : 1;
+    controller->counters.nobodys += unit ? 0 : 1;
+    if (is_good && unit) {
+        take_good(unit, frame);
+    } else if (!is_good && !controller->unit) { /* nobody knows for which unit it was */
+        wh_controller_tell(controller, WH_ENCODE_BAD, &told, true);
+    }
 }
 
 void wh_controller_give_up_waiting(wh_controller_t *controller) {

@@ -53,6 +53,7 @@ typedef struct {
 typedef struct {
     uint64_t frames;   /* good ones that came */
     uint64_t bad;      /* others */
+    uint64_t nobodys;  /* for units that the line does not have */
     uint64_t repeated; /* frames that came again, with their sequence number, and were answered as before */
     uint64_t actions;  /* begun */
     uint64_t busy;     /* refused as such, or ended so */
@@ -134,16 +135,20 @@ struct wh_controller {
     wh_port_line_t line;
 
     wh_host_t *host;
-    uint32_t number;         /* among the ports, from 0 */
-    wh_controller_t *leader; /* of the ports that share a dialect and its mechanism: the first one */
-    const char *role;        /* its name in the dialect's `ports` */
-    bool is_tester;          /* it stands for no mechanism: a tester beside the hosts */
-    wh_pending_t *pending;   /* of the leader: what waits, in its order */
-    bool is_held;            /* of the leader: a HOLD of its own stands */
-    uint64_t guests;         /* of the leader: clients at its dialect's ports, so far */
+    uint32_t number;          /* among the ports, from 0 */
+    wh_controller_t *leader;  /* of the ports that share a dialect and its mechanism: the first one */
+    const char *role;         /* its name in the dialect's `ports` */
+    bool is_tester;           /* it stands for no mechanism: a tester beside the hosts */
+    const char *unit;         /* its address among the units of its line; null: the line is its own */
+    wh_controller_t *carrier; /* whose port and line it has: its own, or those of its line's first unit */
+    wh_pending_t *pending;    /* of the leader: what waits, in its order */
+    bool is_held;             /* of the leader: a HOLD of its own stands */
+    uint64_t guests;          /* of the leader: clients at its dialect's ports, so far */
     wh_action_t action;
     wh_owed_ackn_t owed;
     wh_repeat_t repeat;
+    wh_status_t
+        refused_as; /* the error by which the last answer was refused as it was encoded; WH_OK: none */
 };
 
 /* The run's time beside the wall clock's. */
@@ -165,9 +170,10 @@ typedef struct {
     char told[WH_MCS_DESCRIPTION_BYTES + 4];
     char status[WH_MCS_DESCRIPTION_BYTES], own_status[WH_MCS_DESCRIPTION_BYTES];
     char controller[400], mode[400]; /* what a robot's own has: in an answer, and in an event */
-    wh_lines_t lines;                /* of the request that has come */
-    wh_lines_t conditions;           /* of a client that has gone, or of a tester */
-    wh_pose_t poses[WH_GRIPPERS];    /* of the blades, now */
+    char load_port[4 * WH_NAME_SIZE + 100];
+    wh_lines_t lines;             /* of the request that has come */
+    wh_lines_t conditions;        /* of a client that has gone, or of a tester */
+    wh_pose_t poses[WH_GRIPPERS]; /* of the blades, now */
 } wh_host_texts_t;
 
 /* The caller's functions; each may be null. */
@@ -192,6 +198,7 @@ typedef struct {
     uint32_t sensors, valves; /* of the last slice, by gripper: on, open */
     uint32_t open, shut;      /* by door: the switches */
     wh_mcs_controller_t controllers[WH_LAYOUT_ROBOTS];
+    wh_mcs_load_port_t *ports; /* of the layout's stations; null: not looked at yet */
     wh_event_kind_t complaint; /* the last one, where session->complaints says that there was one */
 } wh_host_seen_t;
 

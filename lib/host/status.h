@@ -22,13 +22,13 @@ bool wh_controller_needs_all(const wh_controller_t *controller);
 /* True if the running action waits for something that another port has. */
 bool wh_controller_waits(const wh_controller_t *controller);
 
-/* True if all running actions were stopped. */
 /* True while a HOLD of this controller stands; to a tester, of any. */
 bool wh_controller_is_held(const wh_controller_t *controller);
 
 /* True while a HOLD stands and all else that runs waits: then the run stands still. */
 bool wh_host_is_held(const wh_host_t *host);
 
+/* True if all running actions were stopped. */
 bool wh_host_is_stopped(const wh_host_t *host);
 
 /* Like wh_mcs_describe, but with several controllers the running command and the last failure are this

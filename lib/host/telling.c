@@ -20,6 +20,10 @@ static void say_mistake(wh_controller_t *controller, const char *message) {
     (void)fprintf(stderr, "serve: %s: %s\n", controller->name, message);
 }
 
+void wh_controller_say_mistake(wh_controller_t *controller) {
+    say_mistake(controller, controller->dialect->message);
+}
+
 /* Makes a frame of the text's next body, which begins at `*at`, and passes that body. Returns the frame's
  * bytes; 0: it is not a frame. */
 static size_t take_body(const wh_controller_t *controller, const wh_reply_t *reply, size_t *at,
@@ -72,6 +76,7 @@ static bool encode_and_send(wh_controller_t *controller, wh_encoder_t encoder, c
     if (!made && encoder == WH_ENCODE_ANSWER && wh_dialect_refused(dialect, &failure)) {
         const wh_told_t refusal = {.request = told->request, .failure = &failure};
         made = wh_dialect_encode(dialect, WH_ENCODE_REFUSE, &refusal);
+        controller->refused_as = failure.number;
     }
     controller->host->clock.lua_us += wh_host_now(controller->host) - begin;
     if (!made) {
@@ -143,7 +148,6 @@ void wh_controller_part(wh_controller_t *controller) {
         wh_dialect_note(controller->dialect, reason);
         say_mistake(controller, controller->dialect->message);
     }
-    wh_host_tell_modes(controller->host);
 }
 
 void wh_controller_tell_again(wh_controller_t *controller, const wh_reply_t *reply) {
@@ -160,7 +164,9 @@ static void tell_and_count(wh_controller_t *controller, wh_encoder_t encoder, co
                            bool is_reply, wh_status_t number) {
     const uint64_t before = controller->line.told;
     const uint64_t broken = controller->line.broken;
+    controller->refused_as = WH_OK;
     wh_controller_tell(controller, encoder, told, is_reply);
+    number = controller->refused_as != WH_OK ? controller->refused_as : number;
     const bool is_shown = controller->line.told > before && controller->line.broken == broken;
     if (is_shown && number != WH_OK && (size_t)number < WH_HOST_NUMBERS) {
         ++controller->host->shown[number];
@@ -215,118 +221,4 @@ void wh_controller_tell_mistake(wh_controller_t *controller, const wh_request_t 
     wh_utf8_visible(message, sizeof message, controller->dialect->message);
     say_mistake(controller, message);
     wh_controller_refuse(controller, request, WH_STATUS_BAD_ARGUMENT, message);
-}
-
-/* Tells an event to a port's client, if its dialect asks for that kind. */
-static void tell_event(wh_controller_t *controller, wh_host_event_kind_t kind, wh_host_event_t event) {
-    const wh_told_t told = {.event = &event};
-    const wh_dialect_t *dialect = controller->dialect;
-    event.client = (wh_client_t){controller->role, controller->line.client};
-    if (dialect->encodes[WH_ENCODE_EVENT] && (dialect->clients.events >> kind & 1U) != 0) {
-        wh_controller_tell(controller, WH_ENCODE_EVENT, &told, false);
-    }
-}
-
-void wh_controller_event(wh_controller_t *controller, const wh_event_t *event, double seconds) {
-    const wh_layout_t *layout = wh_session_layout(controller->host->session);
-    const bool has_wafer = event->wafer >= 0 && (size_t)event->wafer < layout->wafer_count;
-    const bool has_gripper = event->gripper >= 0 && (size_t)event->gripper < layout->machine.gripper_count;
-    const wh_host_event_t told = {.kind = wh_event_name(event->kind),
-                                  .is_complaint = wh_record_is_complaint(event->kind),
-                                  .wafer = has_wafer ? layout->wafers[event->wafer].name : "",
-                                  .gripper = has_gripper ? layout->grippers[event->gripper].name : "",
-                                  .seconds = seconds,
-                                  .value = -1};
-    if (!has_gripper || (controller->mechanism.grippers >> event->gripper & 1U) != 0) {
-        tell_event(controller, WH_HOST_WAFER, told);
-    }
-}
-
-void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, int value) {
-    const wh_layout_t *layout = wh_session_layout(host->session);
-    const wh_host_event_t told = {.kind = wh_host_event_names[kind],
-                                  .wafer = "",
-                                  .gripper = layout->grippers[gripper].name,
-                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
-                                  .value = value};
-    for (size_t i = 0; i < host->count; ++i) {
-        if ((host->controllers[i]->mechanism.grippers >> gripper & 1U) != 0) {
-            tell_event(host->controllers[i], kind, told);
-        }
-    }
-}
-
-/* At the ports of the station that the door belongs to, of the whole cell, and of testers. */
-static bool concerns_door(const wh_controller_t *controller, size_t door) {
-    const wh_layout_t *layout = wh_session_layout(controller->host->session);
-    const wh_port_mechanism_t *mechanism = &controller->mechanism;
-    bool is_its = mechanism->kind == WH_MECHANISM_CELL;
-    for (size_t robot = 0; robot < layout->robot_count && mechanism->kind > WH_MECHANISM_ROBOT; ++robot) {
-        is_its = is_its || mechanism->index == WH_NONE ||
-                 wh_layout_door_of(layout, (size_t)mechanism->index, robot) == (int32_t)door;
-    }
-    return is_its;
-}
-
-void wh_host_tell_door(wh_host_t *host, size_t door, int value) {
-    const wh_host_event_t told = {.kind = wh_host_event_names[WH_HOST_DOOR],
-                                  .wafer = "",
-                                  .gripper = "",
-                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
-                                  .value = value,
-                                  .door = wh_session_layout(host->session)->door_list[door].name};
-    for (size_t i = 0; i < host->count; ++i) {
-        if (concerns_door(host->controllers[i], door)) {
-            tell_event(host->controllers[i], WH_HOST_DOOR, told);
-        }
-    }
-}
-
-/* Tells a change of this robot's own controller, at its ports and at those of all robots. */
-static void tell_mode(wh_host_t *host, size_t robot) {
-    char *text = host->texts->mode;
-    const wh_host_event_t told = {.kind = wh_host_event_names[WH_HOST_MODE],
-                                  .wafer = "",
-                                  .gripper = "",
-                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
-                                  .value = -1,
-                                  .at = wh_session_layout(host->session)->robots[robot].name,
-                                  .state = text};
-    wh_host_tell_conditions(host, robot, text, sizeof host->texts->mode);
-    for (size_t i = 0; i < host->count; ++i) {
-        const wh_port_mechanism_t *mechanism = &host->controllers[i]->mechanism;
-        const bool is_its = mechanism->kind <= WH_MECHANISM_ROBOT &&
-                            (mechanism->index == WH_NONE || mechanism->index == (int32_t)robot);
-        if (is_its) {
-            tell_event(host->controllers[i], WH_HOST_MODE, told);
-        }
-    }
-}
-
-void wh_host_tell_modes(wh_host_t *host) {
-    const wh_layout_t *layout = wh_session_layout(host->session);
-    for (size_t robot = 0; layout && robot < layout->robot_count; ++robot) {
-        const wh_mcs_controller_t *now = wh_mcs_controller(&host->session->mcs, robot);
-        if (memcmp(&host->seen.controllers[robot], now, sizeof *now) != 0) {
-            host->seen.controllers[robot] = *now;
-            tell_mode(host, robot);
-        }
-    }
-}
-
-void wh_controller_tell_others(const wh_controller_t *controller, wh_host_event_kind_t kind, int value) {
-    const wh_host_t *host = controller->host;
-    const wh_host_event_t told = {.kind = wh_host_event_names[kind],
-                                  .wafer = "",
-                                  .gripper = "",
-                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
-                                  .value = value,
-                                  .at = wh_controller_known_as(controller)};
-    for (size_t i = 0; i < host->count && !controller->leader->is_tester; ++i) {
-        const bool concerns =
-            host->controllers[i]->leader == controller->leader || host->controllers[i]->leader->is_tester;
-        if (concerns) {
-            tell_event(host->controllers[i], kind, told);
-        }
-    }
 }

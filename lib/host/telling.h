@@ -28,22 +28,10 @@ void wh_controller_tell_now(void *user, wh_result_t *now);
 void wh_controller_greet(wh_controller_t *controller);
 void wh_controller_part(wh_controller_t *controller);
 
+/* Counts a mistake of the dialect and says its message on standard error. */
+void wh_controller_say_mistake(wh_controller_t *controller);
+
 /* Refuses a request for a mistake of the dialect, whose message names its file and line. */
 void wh_controller_tell_mistake(wh_controller_t *controller, const wh_request_t *request);
-
-/* An event of this slice. */
-void wh_controller_event(wh_controller_t *controller, const wh_event_t *event, double seconds);
-
-/* A gripper's sensor or valve has changed. */
-void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, int value);
-
-/* A door is open, shut (1, 0), or neither (-1). */
-void wh_host_tell_door(wh_host_t *host, size_t door, int value);
-
-/* Tells which robots' own controllers have changed since they were told last. */
-void wh_host_tell_modes(wh_host_t *host);
-
-/* This controller's action has ended, or its HOLD begins or ends: told at its own ports and to testers. */
-void wh_controller_tell_others(const wh_controller_t *controller, wh_host_event_kind_t kind, int value);
 
 #endif

@@ -167,7 +167,7 @@ static void put_doors(description_t *to, const wh_mcs_t *mcs) {
     }
 }
 
-/* The step that runs at a load port, and its carrier. */
+/* The step that runs at a load port, the one that ended its last handshake, and its carrier. */
 static void put_port(description_t *to, const wh_mcs_t *mcs, size_t s) {
     const int32_t number = wh_ports_find(mcs, (int32_t)s);
     const wh_load_port_now_t *port = number == WH_NONE ? NULL : &mcs->clocks->ports->ports[number];
@@ -175,6 +175,11 @@ static void put_port(description_t *to, const wh_mcs_t *mcs, size_t s) {
         put(to, " ");
         put_name(to, mcs->layout->stations[s].name);
         put(to, ".does=%s", wh_load_port_step_name(port->clock.step));
+    }
+    if (port && port->clock.failed != WH_LOAD_PORT_STANDS) {
+        put(to, " ");
+        put_name(to, mcs->layout->stations[s].name);
+        put(to, ".failed=%s", wh_load_port_step_name(port->clock.failed));
     }
     if (port && port->carrier != WH_NONE) {
         put(to, " ");

@@ -132,6 +132,17 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 /* The poses of the grippers at the axes of that slice, base_from_gripper; none without a cell. */
 void wh_mcs_see_grippers(const wh_mcs_t *mcs, wh_pose_t poses[WH_GRIPPERS]);
 
+/* A load port as it is now: names, which live as long as the layout; null: none. */
+typedef struct {
+    const char *is;      /* the state that it has reached */
+    const char *does;    /* the step that runs */
+    const char *carrier; /* that is there, comes or goes */
+    const char *failed;  /* the step that ended its last handshake */
+} wh_mcs_load_port_t;
+
+/* False: the station is none. */
+bool wh_mcs_see_load_port(const wh_mcs_t *mcs, size_t station, wh_mcs_load_port_t *seen);
+
 /* "open", "shut" or "moving", from the door's switches. */
 const char *wh_mcs_door_word(const wh_mcs_t *mcs, size_t door);
 

@@ -14,6 +14,26 @@ bool wh_mcs_does_port_stand(const wh_mcs_t *mcs, int32_t station) {
     return number == WH_NONE || mcs->clocks->ports->ports[number].clock.step == WH_LOAD_PORT_STANDS;
 }
 
+bool wh_mcs_see_load_port(const wh_mcs_t *mcs, size_t station, wh_mcs_load_port_t *seen) {
+    const int32_t number = wh_ports_find(mcs, (int32_t)station);
+    if (number == WH_NONE) {
+        return false;
+    }
+    const wh_load_port_now_t *port = &mcs->clocks->ports->ports[number];
+    const wh_load_port_t *clock = &port->clock;
+    *seen = (wh_mcs_load_port_t){.is = wh_load_port_state_name(clock->is)};
+    if (clock->step != WH_LOAD_PORT_STANDS) {
+        seen->does = wh_load_port_step_name(clock->step);
+    }
+    if (clock->failed != WH_LOAD_PORT_STANDS) {
+        seen->failed = wh_load_port_step_name(clock->failed);
+    }
+    if (port->carrier != WH_NONE) {
+        seen->carrier = mcs->layout->carriers[port->carrier].name;
+    }
+    return true;
+}
+
 static int32_t port_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
     return wh_ports_find(mcs, wh_mcs_index(L, argument, mcs->layout->station_count));
 }

@@ -194,8 +194,8 @@ local commands = {
   end },
 }
 
--- A tester moves nothing: that is the hosts' part.
-local WORDS_OF_THE_PROMPT = [[FAULT ALARM CLEAR CONTROLLER WAIT STATUS VERSION OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE AXES STATIONS STATION PORT_MAP HELP]]
+-- A tester moves nothing but carriers, which people and vehicles bring: the rest is the hosts' part.
+local WORDS_OF_THE_PROMPT = [[FAULT ALARM CLEAR CONTROLLER WAIT CARRIER TAKE_AWAY STATUS VERSION OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE AXES STATIONS STATION PORT_MAP HELP]]
 for word in WORDS_OF_THE_PROMPT:gmatch("%S+") do
   commands[word] = { does = word, run = function(request) return request.line end }
 end
@@ -219,7 +219,7 @@ return {
   name = "JSON lines of a tester",
   framing = { ends = { "\n", "\r\n" }, longest = 4096 },
   second_client = "share",
-  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode" },
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
   decode = decode,
   commands = commands,
   gone = function(client) subscribed[client.number] = nil end,
@@ -236,10 +236,11 @@ return {
       if not (subscribed[event.client] or {})[event.kind] then
         return nil
       end
-      local own = event.controller or {}
+      local own, load_port = event.controller or {}, event.load_port or {}
       return object("event", event.kind, "seconds", event.seconds, "wafer", event.wafer ~= "" and event.wafer or nil,
         "gripper", event.gripper ~= "" and event.gripper or nil, "value", event.value, "port", event.at, "door", event.door, "power", own.power, "brakes", own.brakes, "estop", own.estop,
-        "servo", own.servo, "mode", own.mode, "exceeded", own.exceeded, "override", own.override)
+        "servo", own.servo, "mode", own.mode, "exceeded", own.exceeded, "override", own.override,
+        "is", load_port.is, "does", load_port.does, "carrier", load_port.carrier, "failed", load_port.failed)
     end,
   },
   errors = errors,

@@ -4,7 +4,7 @@
 -- told as `>,unit,EVNT,...,sum`. The sum counts all bytes from the first comma to the one before the sum, as two hex
 -- digits. Lengths are whole um, angles whole 0.001 degrees, times whole ms of the simulated clock.
 
-local UNIT = "1"
+local UNIT = host.unit("1")
 
 local status = "0"         -- 0 idle, 1 running, 2 held
 local last_sequence = "00" -- of the last telegram: a refusal is answered under it
@@ -223,6 +223,7 @@ return {
     sums_separator = true, shortest = 4, longest = 512, timeout = 1,
   },
   units = { length = 0.001, angle = 0.001 },
+  unit_of = function(frame) return split(frame:sub(2))[1] end,
   decode = decode,
 
   commands = {

@@ -57,6 +57,7 @@ return function(native, commands, answers, lookup, tokens, states, background, o
     teaching = function() return { "beam", "touch" } end,
     mark = function() return lookup.align_fields.mark.values end,
     elbow = function() return { "left", "right" } end,
+    e84_step = function() return { "tp1", "tp2", "tp3", "tp4", "tp5" } end,
     up_or_down = function() return lookup.up_or_down.values end,
     side = function() return lookup.sides end,
     power = function() return lookup.controller_words.power end,
@@ -166,7 +167,7 @@ return function(native, commands, answers, lookup, tokens, states, background, o
 
   -- The names of turns in a line, and the fault's options.
   local TURNS = { "rx", "ry", "rz" }
-  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer", door = "door", station = "station" }
+  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer", door = "door", station = "station", step = "e84_step" }
   for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting", "error", "beam" }) do
     fault_options[name] = "number"
   end

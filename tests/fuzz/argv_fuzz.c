@@ -99,7 +99,7 @@ bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test
 bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
 bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
 bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *options);
-bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path);
+bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path, const char *unit);
 bool __wrap_wh_transcript_open(wh_transcript_t *transcript, const char *path);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder);
 bool __wrap_wh_node_reaches_others(const char *url);
@@ -270,7 +270,8 @@ bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *o
     return false;
 }
 
-bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path) {
+bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path, const char *unit) {
+    (void)unit;
     reached = true;
     REQUIRE(refused || path != NULL);
     memset(dialect, 0, sizeof *dialect);

@@ -184,7 +184,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const uint8_t *const end = size > 0 ? memchr(data, FRAME_END, size) : NULL;
     const size_t length = end ? (size_t)(end - data) : size;
     put_text(data, length);
-    if (!wh_dialect_open(&dialect, path)) {
+    if (!wh_dialect_open(&dialect, path, NULL)) {
         check_message();
     } else if (!wh_dialect_fits(&dialect, layout)) {
         check_message();

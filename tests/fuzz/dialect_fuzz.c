@@ -36,7 +36,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     (void)argc;
     (void)argv;
     for (size_t i = 0; i < DIALECTS; ++i) {
-        REQUIRE(wh_dialect_open(&dialects[i], paths[i]));
+        REQUIRE(wh_dialect_open(&dialects[i], paths[i], NULL));
         fuzz_snapshot_add(dialects[i].sandbox, sizeof *dialects[i].sandbox);
     }
     fuzz_snapshot_take();

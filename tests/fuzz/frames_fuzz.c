@@ -28,6 +28,25 @@ static wh_framing_t framing_of(uint8_t choice) {
     }
     framing.longest = 64;
     framing.timeout_us = (choice & 0x40U) != 0 ? 50 : 0;
+    if (choice % 7U == 5U && framing.sum != WH_SUM_NONE) {
+        framing.end_count = 1;
+        framing.separator.size = 0;
+        framing.sums_separator = false;
+        framing.sum_is_behind = true;
+        framing.sums_end = (choice & 0x20U) != 0;
+        framing.sums_as_bytes = framing.sum == WH_SUM_XOR;
+    }
+    if (choice % 7U == 6U) {
+        static const unsigned bases[] = {256, 10, 16};
+        framing.length = (wh_framing_length_t){.size = 2,
+                                               .base = bases[choice / 7U % 3U],
+                                               .low_first = choice / 21U % 2U == 1,
+                                               .counts = (wh_length_counts_t)(choice % 3U)};
+        framing.end_count = choice >> 2 & 1U;
+        framing.sums_length = framing.sum != WH_SUM_NONE;
+        framing.sums_as_bytes = framing.sum == WH_SUM_ADD;
+        framing.timeout_us = 50;
+    }
     return framing;
 }
 

@@ -254,7 +254,80 @@ static void same_in_pieces(void **state) {
             kinds |= strstr(plain.text, wh_frame_kind_name(kind)) ? (size_t)1 << kind : 0;
         }
     }
-    assert_int_equal(kinds, (1 << WH_FRAME_KINDS) - (1 << WH_FRAME_GOOD));
+    const size_t all = ((size_t)1 << WH_FRAME_KINDS) - ((size_t)1 << WH_FRAME_GOOD);
+    assert_int_equal(kinds, all - ((size_t)1 << WH_FRAME_BAD_LENGTH));
+}
+
+/* ------------------------------------------------------------------------------------------------- lengths */
+
+static wh_framing_t draw_counted(void) {
+    static const unsigned bases[] = {10, 16, 256};
+    wh_framing_t framing = {.longest = WH_FRAMING_LEAST + wh_test_below(90), .timeout_us = 1000};
+    framing.start_count = wh_test_below(3);
+    framing.starts[0] = (wh_framing_mark_t){"$", 1};
+    framing.starts[1] = (wh_framing_mark_t){"!!", 2};
+    framing.end_count = wh_test_below(2);
+    framing.ends[0] = (wh_framing_mark_t){"\r\n", 1 + wh_test_below(2)};
+    framing.length = (wh_framing_length_t){.size = 3,
+                                           .base = bases[wh_test_below(3)],
+                                           .low_first = wh_test_below(2) == 0,
+                                           .counts = (wh_length_counts_t)wh_test_below(3)};
+    framing.sum = (wh_sum_kind_t)wh_test_below(5);
+    if (framing.sum != WH_SUM_NONE) {
+        framing.sums_start = wh_test_below(2) == 0;
+        framing.sums_length = wh_test_below(2) == 0;
+        framing.sums_as_bytes = wh_test_below(2) == 0;
+        framing.separator = (wh_framing_mark_t){",", wh_test_below(2)};
+    }
+    framing.shortest = wh_test_below(4);
+    return framing;
+}
+
+/* Appends a frame around a body of any bytes and, to `told`, what a framer has to say of it. False: it makes
+ * none. */
+static bool draw_counted_frame(const wh_framing_t *framing, told_t *told) {
+    uint8_t body[60];
+    uint8_t frame[WH_FRAMING_LINE];
+    const size_t size = wh_test_below(60);
+    const size_t start = framing->start_count > 0 ? wh_test_below((uint32_t)framing->start_count) : 0;
+    for (size_t i = 0; i < size; ++i) {
+        body[i] = (uint8_t)wh_test_below(256);
+    }
+    const size_t whole = wh_framing_encode(framing, start, body, size, frame);
+    const size_t begin = framing->start_count > 0 ? framing->starts[start].size : 0;
+    const size_t least = begin + 3 + size;
+    assert_true(whole == 0 || (whole >= least && memcmp(frame + begin + 3, body, size) == 0));
+    if (whole == 0 || count + whole > BYTES) {
+        return false;
+    }
+    append(frame, whole);
+    tell(told, WH_FRAME_GOOD, frame, whole, body, size);
+    return true;
+}
+
+/* Bodies of any bytes come back, however the line is cut. */
+static void counted(void **state) {
+    (void)state;
+    static told_t plain;
+    static told_t cut;
+    uint64_t drawn = 0;
+    wh_rounds_t rounds = WH_ROUNDS(400, ROUNDS, 0.4);
+    while (wh_round(&rounds)) {
+        const wh_framing_t framing = draw_counted();
+        plain.size = count = 0;
+        plain.text[0] = '\0';
+        for (int i = 0; i < 6; ++i) {
+            drawn += draw_counted_frame(&framing, &plain) ? 1 : 0;
+        }
+        memset(times, 0, sizeof times);
+        for (uint32_t most = 1; most <= 100; most *= 10) {
+            cut.size = 0;
+            cut.text[0] = '\0';
+            read_in_pieces(&framing, most, &cut);
+            assert_string_equal(cut.text, plain.text);
+        }
+    }
+    assert_true(drawn > 2U * (uint64_t)rounds.number);
 }
 
 /* Marks of any length; where all are of one byte, perhaps with an escape. */
@@ -317,6 +390,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_in_pieces),
         cmocka_unit_test(encoded_comes_back),
+        cmocka_unit_test(counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

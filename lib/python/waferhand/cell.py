@@ -23,11 +23,15 @@ class Untried(AssertionError):
 
 @dataclass(frozen=True)
 class Port:
-    """A dialect's controller; `mechanism` names a robot or a station, `ports` says how many ports it names."""
+    """A dialect's controller; `mechanism` names a robot or a station, `ports` says how many ports it names.
+
+    `unit` is its address on a line of several units; with `ports=0` that is the line of the one before it.
+    """
 
     dialect: str
     mechanism: Optional[str] = None
     ports: int = 1
+    unit: Optional[str] = None
 
 
 class Line:
@@ -128,6 +132,7 @@ class Cell:
         for port in self._dialects:
             command += ["--dialect", find_dialect(port.dialect, program)]
             command += ["--mechanism", port.mechanism] if port.mechanism else []
+            command += ["--unit", port.unit] if port.unit is not None else []
             command += ["--tcp", "127.0.0.1:0"] * port.ports
         return command + self._options
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import socket
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Iterator, Optional, Union
 
 Value = Union[str, float, int, None]
@@ -31,6 +31,11 @@ class Event:
     gripper: Optional[str] = None
     value: Optional[int] = None
     port: Optional[str] = None
+    door: Optional[str] = None
+    state: dict[str, Value] = field(default_factory=dict, hash=False)  # of "mode" and "port": all else that is told, by name
+
+
+FIELDS = ("seconds", "wafer", "gripper", "value", "port", "door")
 
 
 @dataclass(frozen=True)
@@ -144,4 +149,5 @@ class Events:
                 raise StopIteration from None
             raise
         kind = str(told.pop("event"))
-        return Event(kind, **told)
+        known = {name: told.pop(name) for name in FIELDS if name in told}
+        return Event(kind, **known, state=told)

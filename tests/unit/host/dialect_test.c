@@ -40,7 +40,7 @@ static int free_layout(void **state) {
 static bool open_text(const char *text) {
     assert_int_equal(ftruncate(file, 0), 0);
     assert_int_equal(pwrite(file, text, strlen(text), 0), (ssize_t)strlen(text));
-    return wh_dialect_open(&dialect, path);
+    return wh_dialect_open(&dialect, path, NULL);
 }
 
 /* One printable line that begins with the file's name and contains this text. */

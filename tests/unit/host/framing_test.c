@@ -238,6 +238,245 @@ static void writing(void **state) {
     assert_int_equal(wh_framing_encode(&framing, 0, body, 3, frame), 5);
 }
 
+/* SOH, two bytes of length that count all up to the sum, a body, a sum of two digits, ETX. */
+static wh_framing_t counted(void) {
+    wh_framing_t framing = wh_framing_default();
+    framing.starts[0] = (wh_framing_mark_t){"\x01", 1};
+    framing.start_count = 1;
+    framing.ends[0] = (wh_framing_mark_t){"\x03", 1};
+    framing.end_count = 1;
+    framing.length = (wh_framing_length_t){.size = 2, .base = 256, .counts = WH_LENGTH_REST};
+    framing.sum = WH_SUM_ADD;
+    framing.sums_length = true;
+    framing.longest = 64;
+    framing.timeout_us = 5000;
+    return framing;
+}
+
+static void feed_bytes(const void *bytes, size_t size, int64_t time_us) {
+    wh_frame_t frame;
+    for (size_t at = 0;;) {
+        at += wh_framer_feed(&framer, (const uint8_t *)bytes + at, size - at, time_us, &frame);
+        if (frame.kind == WH_FRAME_NONE) {
+            assert_int_equal(at, size);
+            return;
+        }
+        note(&frame);
+    }
+}
+
+/* 00 + 06 + '0' + '0' + 'A' + ';' = 6 + 0x30 + 0x30 + 0x41 + 0x3B = 0xE2. */
+static void lengths(void **state) {
+    (void)state;
+    const wh_framing_t framing = counted();
+    uint8_t frame[WH_FRAMING_LINE];
+    static const uint8_t good[] = "\x01\x00\x06"
+                                  "00A;E2\x03";
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"00A;", 4, frame), sizeof good - 1);
+    assert_memory_equal(frame, good, sizeof good - 1);
+    begin(&framing);
+    feed_bytes(good, 5, 0);
+    feed_bytes(good + 5, sizeof good - 6, 4999);
+    assert_string_equal(heard, "good:00A;;");
+    /* A body may have any bytes, those of marks as well. */
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"\x01\x03\x03\x01", 4, frame), 10);
+    begin(&framing);
+    feed_bytes(frame, 10, 0);
+    assert_string_equal(heard, "good:\x01\x03\x03\x01;");
+    assert_int_equal(wh_framing_encode(&framing, 0, frame, 59, frame), 0);
+    /* An empty one is a frame: its sum is that of the length. */
+    assert_int_equal(wh_framing_encode(&framing, 0, frame, 0, frame), 6);
+    assert_memory_equal(frame,
+                        "\x01\x00\x02"
+                        "02\x03",
+                        6);
+}
+
+static void bad_lengths(void **state) {
+    (void)state;
+    const wh_framing_t framing = counted();
+    wh_frame_t frame;
+    static const uint8_t good[] = "\x01\x00\x06"
+                                  "00A;E2\x03";
+    begin(&framing);
+    feed_bytes("\x01\x00\x06"
+               "00A;E3\x03"
+               "\x01\x00\x06"
+               "00A;E2\x04"
+               "xy",
+               22, 0);
+    feed_bytes(good, sizeof good - 1, 0);
+    assert_string_equal(heard, "bad sum:\x01;no end:\x01;garbage:xy;good:00A;;"); /* up to a byte 0 */
+    assert_int_equal(framer.counters.frames[WH_FRAME_BAD_SUM], 1);
+    assert_int_equal(framer.counters.frames[WH_FRAME_NO_END], 1);
+    assert_int_equal(framer.counters.frames[WH_FRAME_GARBAGE], 1);
+    assert_int_equal(framer.counters.frames[WH_FRAME_GOOD], 1);
+    /* Less than a sum, and more than `longest`: told with the length; a start brings it back. */
+    begin(&framing);
+    assert_int_equal(wh_framer_feed(&framer, (const uint8_t *)"\x01\x00\x01zz", 5, 0, &frame), 3);
+    assert_int_equal(frame.kind, WH_FRAME_BAD_LENGTH);
+    assert_true(frame.is_over && frame.size == 2);
+    feed_bytes("zzzzzzzzzzzz", 12, 0);
+    feed_bytes(good, sizeof good - 1, 0);
+    assert_int_equal(framer.counters.passed, 13);
+    assert_int_equal(wh_framer_feed(&framer, (const uint8_t *)"\x01\x10\x00zz", 5, 0, &frame), 3);
+    assert_int_equal(frame.kind, WH_FRAME_TOO_LONG);
+    feed_bytes(good, sizeof good - 1, 5000);
+    assert_string_equal(heard, "good:00A;;good:00A;;");
+    feed_bytes(good, 7, 5000);
+    assert_true(wh_framer_wait(&framer, 10000, &frame));
+    assert_int_equal(frame.kind, WH_FRAME_TIMEOUT);
+}
+
+/* Digits, a length of the whole frame, the low byte first, a sum as bytes, neither start nor end. */
+static void forms_of_lengths(void **state) {
+    (void)state;
+    wh_framing_t framing = counted();
+    uint8_t frame[WH_FRAMING_LINE];
+    framing.length = (wh_framing_length_t){.size = 3, .base = 10, .counts = WH_LENGTH_FRAME};
+    framing.sum = WH_SUM_NONE;
+    framing.sums_length = false;
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"HOME", 4, frame), 9);
+    assert_memory_equal(frame,
+                        "\x01"
+                        "009HOME\x03",
+                        9);
+    begin(&framing);
+    feed("\x01"
+         "009HOME\x03\x01"
+         "0x9HOME\x03\x01"
+         "00A\x01"
+         "004\x01"
+         "099\x01"
+         "005\x03",
+         0);
+    assert_string_equal(heard, "good:HOME;bad length:\x01"
+                               "0x;bad length:\x01"
+                               "00;bad length:\x01"
+                               "00;too long:\x01"
+                               "09;good:;");
+    framing.length = (wh_framing_length_t){.size = 2, .base = 16, .counts = WH_LENGTH_BODY};
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"0123456789", 10, frame), 14);
+    assert_memory_equal(frame,
+                        "\x01"
+                        "0A0123456789\x03",
+                        14);
+    framing.length.size = 1;
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"0123456789abcdef", 16, frame), 0);
+    framing.length =
+        (wh_framing_length_t){.size = 2, .base = 256, .counts = WH_LENGTH_BODY, .low_first = true};
+    framing.start_count = framing.end_count = 0;
+    framing.sum = WH_SUM_CRC16;
+    framing.sums_as_bytes = true;
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"123456789", 9, frame), 13);
+    assert_memory_equal(frame,
+                        "\x09\x00"
+                        "123456789\x4B\x37",
+                        13);
+    begin(&framing);
+    feed_bytes(frame, 13, 0);
+    feed_bytes(frame, 13, 0);
+    frame[12] = 0x36;
+    feed_bytes(frame, 13, 0);
+    assert_int_equal(framer.counters.frames[WH_FRAME_GOOD], 2);
+    assert_int_equal(framer.counters.frames[WH_FRAME_BAD_SUM], 1);
+}
+
+/* STX, a body with escapes, ETX, and behind it the exclusive or of body and ETX, whatever byte that is. */
+static void sums_behind(void **state) {
+    (void)state;
+    wh_framing_t framing = wh_framing_default();
+    uint8_t frame[WH_FRAMING_LINE];
+    framing.starts[0] = (wh_framing_mark_t){"\x02", 1};
+    framing.start_count = 1;
+    framing.ends[0] = (wh_framing_mark_t){"\x03", 1};
+    framing.end_count = 1;
+    framing.has_escape = true;
+    framing.escape = 0x10;
+    framing.sum = WH_SUM_XOR;
+    framing.sum_is_behind = framing.sums_end = framing.sums_as_bytes = true;
+    framing.timeout_us = 5000;
+    /* 'a' ^ 'b' ^ 3 = 0, a byte 0; 'c' ^ 'b' ^ 3 = 2, a start. */
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"ab", 2, frame), 5);
+    assert_memory_equal(frame,
+                        "\x02"
+                        "ab\x03\x00",
+                        5);
+    begin(&framing);
+    feed_bytes(frame, 4, 0);
+    feed_bytes(frame + 4, 1, 4999);
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"cb", 2, frame), 5);
+    assert_int_equal(frame[4], 2);
+    feed_bytes(frame, 5, 5000);
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"\x03\x02", 2, frame), 7);
+    feed_bytes(frame, 7, 5000);
+    frame[6] ^= 1;
+    feed_bytes(frame, 7, 5000);
+    assert_string_equal(heard, "good:ab;good:cb;good:\x03\x02;bad sum:\x02\x10\x03\x10\x02\x03\x03;");
+    /* One whose sum does not come is given up, and the next one is whole. */
+    wh_frame_t late;
+    heard[0] = '\0';
+    feed_bytes(frame, 6, 6000);
+    assert_true(wh_framer_wait(&framer, 11000, &late));
+    assert_int_equal(late.kind, WH_FRAME_TIMEOUT);
+    frame[6] ^= 1;
+    feed_bytes(frame, 7, 12000);
+    feed_bytes("xy\x03", 3, 12000);
+    assert_string_equal(heard, "good:\x03\x02;garbage:xy\x03;");
+    /* With its sum it would be too long: this is told at its end. */
+    uint8_t longest[WH_FRAMING_LINE];
+    memset(longest, 'a', sizeof longest);
+    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 3, frame), WH_FRAMING_LINE);
+    feed_bytes(frame, WH_FRAMING_LINE, 12000);
+    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 2, frame), 0);
+    longest[0] = 2;
+    longest[WH_FRAMING_LINE - 1] = 3;
+    feed_bytes(longest, WH_FRAMING_LINE, 12000);
+    assert_int_equal(framer.counters.frames[WH_FRAME_TOO_LONG], 1);
+    feed_bytes("\x02"
+               "ab\x03\x00",
+               5, 12000);
+    assert_string_equal(heard + strlen(heard) - 8, "good:ab;");
+    framing.sums_as_bytes = false;
+    framing.sum = WH_SUM_ADD;
+    assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"ab", 2, frame), 6);
+    assert_memory_equal(frame,
+                        "\x02"
+                        "ab\x03"
+                        "C6",
+                        6);
+    begin(&framing);
+    feed_bytes(frame, 6, 0);
+    assert_string_equal(heard, "good:ab;");
+}
+
+/* No single wrong byte passes, and behind a pause the next frame is read whatever was wrong before. */
+static void damaged_lengths(void **state) {
+    (void)state;
+    wh_framing_t framing = counted();
+    uint8_t whole[WH_FRAMING_LINE];
+    framing.sum = WH_SUM_CRC16;
+    const size_t size = wh_framing_encode(&framing, 0, (const uint8_t *)"00MOV:ORGSH;", 12, whole);
+    assert_int_equal(size, 20);
+    int64_t now = 0;
+    begin(&framing);
+    for (size_t at = 0; at < size; ++at) {
+        for (unsigned value = 1; value < 256; ++value) {
+            uint8_t frame[WH_FRAMING_LINE];
+            memcpy(frame, whole, size);
+            frame[at] = (uint8_t)(frame[at] ^ value);
+            const bool is_other_case = value == 0x20 && at >= 15 && at < 19 && whole[at] >= 'A';
+            heard[0] = '\0';
+            feed_bytes(frame, size, now);
+            assert_int_equal(framer.counters.frames[WH_FRAME_GOOD], is_other_case ? 1 : 0);
+            now += 5000;
+            feed_bytes(whole, size, now);
+            assert_int_equal(framer.counters.frames[WH_FRAME_GOOD], is_other_case ? 2 : 1);
+            framer.counters.frames[WH_FRAME_GOOD] = 0;
+        }
+    }
+}
+
 static void assert_refused(const wh_framing_t *framing, const char *expected) {
     char problem[WH_FRAMING_PROBLEM_BYTES] = "";
     wh_framer_t before;
@@ -269,6 +508,11 @@ static void descriptions(void **state) {
     assert_true(wh_framing_validate(&framing, problem));
     REFUSE(start_count, 5, "starts: 5 (expected 0 to 4)");
     REFUSE(end_count, 0, "ends: 0 (expected 1 to 4)");
+    REFUSE(sums_as_bytes, true, "sum: one of bytes (expected it beside a length, or behind the end)");
+    REFUSE(sums_length, true, "sums_length: expected a length");
+    REFUSE(sums_end, true, "sums_end: expected a sum behind the end");
+    REFUSE(sum_is_behind, true, "sum: one behind the end (expected no length, one end, no separator)");
+    REFUSE(length.size, 5, "ends: 2 (expected 0 to 1)");
     REFUSE(sum, (wh_sum_kind_t)5, "sum: 5 (expected 0 to 4)");
     REFUSE(longest, 4097, "longest: 4097 (expected 32 to 4096)");
     REFUSE(longest, 31, "longest: 31 (expected 32 to 4096)");
@@ -289,14 +533,33 @@ static void descriptions(void **state) {
     framing.starts[1] = MARK("$$");
     framing.start_count = 2;
     assert_refused(&framing, "start 2: expected that it does not begin as another start");
+    framing = counted();
+    assert_true(wh_framing_validate(&framing, problem));
+    framing.length.size = 5;
+    assert_refused(&framing, "length.size: 5 (expected 0 to 4)");
+    framing = counted();
+    framing.length.base = 8;
+    assert_refused(&framing, "length: a base of its digits (expected 10, 16 or 256)");
+    framing = counted();
+    framing.timeout_us = 0;
+    assert_refused(&framing, "timeout: 0 (expected above 0 beside a length)");
+    framing = counted();
+    framing.has_escape = true;
+    framing.escape = 0x10;
+    assert_refused(&framing, "escape: expected none beside a length");
+    framing = counted();
+    framing.sum = WH_SUM_NONE;
+    assert_refused(&framing, "sum: none (expected another one, for something says more of it)");
     assert_string_equal(wh_frame_kind_name(WH_FRAME_KINDS), "unknown");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines),    cmocka_unit_test(sums),       cmocka_unit_test(a_crc),
-        cmocka_unit_test(escapes),  cmocka_unit_test(lost_bytes), cmocka_unit_test(pauses),
-        cmocka_unit_test(too_long), cmocka_unit_test(writing),    cmocka_unit_test(descriptions),
+        cmocka_unit_test(lines),           cmocka_unit_test(sums),        cmocka_unit_test(a_crc),
+        cmocka_unit_test(escapes),         cmocka_unit_test(lost_bytes),  cmocka_unit_test(pauses),
+        cmocka_unit_test(too_long),        cmocka_unit_test(writing),     cmocka_unit_test(descriptions),
+        cmocka_unit_test(lengths),         cmocka_unit_test(bad_lengths), cmocka_unit_test(forms_of_lengths),
+        cmocka_unit_test(damaged_lengths), cmocka_unit_test(sums_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
