@@ -73,7 +73,8 @@ static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
     return heads->layout || refuse_line(played, 1, "no layout (expected a head: layout \"FILE\")");
 }
 
-/* The text of a head of this name that says more of the port of that head, such as `mechanism "NAME"`; null: there is none. */
+/* The text of a head of this name that says more of that port, such as `mechanism "NAME"`; null: there is
+ * none. */
 static const char *find_more(const wh_transcript_t *played, size_t port, const char *name) {
     for (size_t i = port + 1; i < played->head_count && says_more(&played->heads[i]); ++i) {
         if (strcmp(played->heads[i].name, name) == 0) {

@@ -187,7 +187,7 @@ int wh_app_dialect(int argc, char **argv) {
     if (!wh_dialect_open(&dialect, arguments.path, arguments.unit)) {
         fprintf(stderr, "%s\n", dialect.message);
     } else if (arguments.said.count > 0) {
-        dialect.stands_for = arguments.mechanism;
+        dialect.place.stands_for = arguments.mechanism;
         status =
             wh_dialect_say(&dialect, &arguments.said) && wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     } else {

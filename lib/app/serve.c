@@ -130,7 +130,8 @@ typedef struct {
     size_t tcp, pty; /* taken so far */
 } addresses_t;
 
-/* The option of this list between this dialect and the next one, such as its mechanism; null: there is none. */
+/* The option of this list between this dialect and the next one, such as its mechanism; null: there is
+ * none. */
 static const char *option_of(const addresses_t *at, size_t dialect, const wh_option_list_t *list) {
     const wh_option_list_t *dialects = &at->arguments->dialects;
     const int begin = place_of(at->argc, at->argv, dialects->items[dialect]);

@@ -48,7 +48,7 @@ bool wh_dialect_open(wh_dialect_t *dialect, const char *path, const char *unit) 
     wh_sandbox_result_t result = {.status = WH_SANDBOX_OK};
     memset(dialect, 0, sizeof *dialect);
     dialect->path = path;
-    dialect->unit = unit;
+    dialect->place.unit = unit;
     dialect->sandbox = wh_sandbox_new(&limits);
     lua_State *L = dialect->sandbox ? wh_sandbox_state(dialect->sandbox) : NULL;
     const bool opened = L && wh_sandbox_protect(L, open_libraries, dialect, &result) &&

@@ -125,12 +125,17 @@ typedef struct {
     size_t count;
 } wh_lines_t;
 
+/* Where its controller is: the caller's texts. */
+typedef struct {
+    const char *unit;       /* its address on its line; null: none was given */
+    const char *stands_for; /* the name of its mechanism in the layout, set once it is known; null: several */
+} wh_dialect_place_t;
+
 /* Read-only for others. Must not be moved while it is open. */
 typedef struct {
     wh_sandbox_t *sandbox;
-    const char *path;       /* the caller's */
-    const char *unit;       /* its address on its line; null: none was given. The caller's, */
-    const char *stands_for; /* as this name in the layout, which the caller sets; null: several things */
+    const char *path; /* the caller's */
+    wh_dialect_place_t place;
     char name[WH_DIALECT_NAME_BYTES];
     wh_mechanism_t mechanism;
     wh_framing_t framing; /* for the bytes that the host sends */
@@ -198,8 +203,8 @@ wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client,
                                size_t size, wh_request_t *request, wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
-/* Calls unit_of(frame): the address of the unit that the frame is for, or an empty text. False: a mistake, see
- * `message`. */
+/* Calls unit_of(frame): the address of the unit that the frame is for, or an empty text. False: a mistake,
+ * see `message`. */
 bool wh_dialect_unit_of(wh_dialect_t *dialect, const char *frame, size_t size,
                         char unit[WH_DIALECT_NAME_BYTES]);
 

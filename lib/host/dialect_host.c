@@ -102,7 +102,7 @@ static const wh_dialect_t *find_self(lua_State *L) {
 
 /* host.unit(otherwise): the address that this controller was given on its line; without one `otherwise`. */
 static int own_unit(lua_State *L) {
-    const char *unit = find_self(L)->unit;
+    const char *unit = find_self(L)->place.unit;
     lua_settop(L, 1);
     if (unit) {
         lua_pushstring(L, unit);
@@ -115,10 +115,10 @@ static int own_mechanism(lua_State *L) {
     const wh_dialect_t *dialect = find_self(L);
     const bool is_robot = dialect->mechanism == WH_MECHANISM_ROBOT;
     const wh_status_t refusal = is_robot ? WH_STATUS_NO_SUCH_ROBOT : WH_STATUS_NO_SUCH_STATION;
-    if (!dialect->stands_for) {
+    if (!dialect->place.stands_for) {
         return refuse_by(L, refusal, "this controller stands for several (expected --mechanism)");
     }
-    lua_pushstring(L, dialect->stands_for);
+    lua_pushstring(L, dialect->place.stands_for);
     return push_spelt(L, refusal);
 }
 

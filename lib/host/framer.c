@@ -229,27 +229,35 @@ static void await_sum(wh_framer_t *framer, wh_frame_t *frame) {
     }
 }
 
+/* A byte was added to what is no frame: a start may begin one. */
+static void seek_start(wh_framer_t *framer, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    const size_t start = mark_at_end(framer, framing->starts, framing->start_count, 0);
+    if (start < framing->start_count) {
+        begin_line(framer, start, frame);
+    } else if (framer->size > framing->longest) {
+        tell_overflow(framer, framing->end_count, frame);
+    }
+}
+
+/* The start and the length are there. False: it is none that can be, which is told. */
+static bool read_length(wh_framer_t *framer, wh_frame_t *frame) {
+    const size_t start = start_size(framer);
+    framer->whole = wh_framing_whole(&framer->framing, start, framer->line + start);
+    const bool is_good = framer->whole > 0 && framer->whole <= framer->framing.longest;
+    if (!is_good) {
+        refuse_length(framer, framer->whole == 0 ? WH_FRAME_BAD_LENGTH : WH_FRAME_TOO_LONG, frame);
+    }
+    return is_good;
+}
+
 /* A byte was added to a line whose frames tell their length. */
 static void count_byte(wh_framer_t *framer, wh_frame_t *frame) {
-    const wh_framing_t *framing = &framer->framing;
+    const size_t head = start_size(framer) + framer->framing.length.size;
     if (framer->dropped > 0 || is_garbage(framer)) {
-        const size_t start = mark_at_end(framer, framing->starts, framing->start_count, 0);
-        if (start < framing->start_count) {
-            begin_line(framer, start, frame);
-        } else if (framer->size > framing->longest) {
-            tell_overflow(framer, framing->end_count, frame);
-        }
-        return;
-    }
-    const size_t head = start_size(framer) + framing->length.size;
-    if (framer->size == head) {
-        framer->whole = wh_framing_whole(framing, start_size(framer), framer->line + start_size(framer));
-        if (framer->whole == 0 || framer->whole > framing->longest) {
-            refuse_length(framer, framer->whole == 0 ? WH_FRAME_BAD_LENGTH : WH_FRAME_TOO_LONG, frame);
-            return;
-        }
-    }
-    if (framer->size >= head && framer->size == framer->whole) {
+        seek_start(framer, frame);
+    } else if (framer->size >= head && (framer->size > head || read_length(framer, frame)) &&
+               framer->size == framer->whole) {
         judge_counted(framer, frame);
     }
 }
@@ -261,24 +269,9 @@ static bool may_be_mark(wh_framer_t *framer, uint8_t byte) {
     return !is_plain && framer->may_mark[byte];
 }
 
-/* Adds a byte to the line. */
-static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
+/* A byte was added to a line whose frames end by marks. */
+static void seek_marks(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
-    if (framer->dropped > 0) {
-        framer->dropped += 1;
-        if (framer->size == WH_FRAMING_MARK) {
-            memmove(framer->line, framer->line + 1, --framer->size);
-        }
-    }
-    framer->line[framer->size++] = byte;
-    if (framing->length.size > 0) {
-        count_byte(framer, frame);
-        return;
-    }
-    if (framer->whole > 0) {
-        await_sum(framer, frame);
-        return;
-    }
     size_t start = framing->start_count;
     size_t end = framing->end_count;
     if (may_be_mark(framer, byte)) {
@@ -294,6 +287,24 @@ static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
         tell_overflow(framer, end, frame);
     } else if (end < framing->end_count) {
         take_end(framer, end, frame);
+    }
+}
+
+/* Adds a byte to the line. */
+static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
+    if (framer->dropped > 0) {
+        framer->dropped += 1;
+        if (framer->size == WH_FRAMING_MARK) {
+            memmove(framer->line, framer->line + 1, --framer->size);
+        }
+    }
+    framer->line[framer->size++] = byte;
+    if (framer->framing.length.size > 0) {
+        count_byte(framer, frame);
+    } else if (framer->whole > 0) {
+        await_sum(framer, frame);
+    } else {
+        seek_marks(framer, byte, frame);
     }
 }
 

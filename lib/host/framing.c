@@ -216,28 +216,44 @@ static bool check_numbers(const wh_framing_t *framing, char *problem) {
 }
 
 /* With a length only a pause brings a reader back that has lost its place. */
-static bool check_length(const wh_framing_t *framing, char *problem) {
+static const char *find_wrong_length(const wh_framing_t *framing) {
     const wh_framing_length_t *length = &framing->length;
-    const char *wrong = NULL;
-    if (length->size == 0 && framing->sums_length) {
-        wrong = "sums_length: expected a length";
-    } else if (length->size == 0 && framing->sums_as_bytes && !framing->sum_is_behind) {
-        wrong = "sum: one of bytes (expected it beside a length, or behind the end)";
-    } else if (length->size > 0 && length->base != 10 && length->base != 16 && length->base != 256) {
-        wrong = "length: a base of its digits (expected 10, 16 or 256)";
-    } else if (length->size > 0 && framing->timeout_us == 0) {
-        wrong = "timeout: 0 (expected above 0 beside a length)";
-    } else if (length->size > 0 && framing->has_escape) {
-        wrong = "escape: expected none beside a length";
-    } else if (framing->sum == WH_SUM_NONE &&
-               (framing->sums_as_bytes || framing->sums_length || framing->sum_is_behind)) {
-        wrong = "sum: none (expected another one, for something says more of it)";
-    } else if (framing->sums_end && !framing->sum_is_behind) {
-        wrong = "sums_end: expected a sum behind the end";
-    } else if (framing->sum_is_behind &&
-               (length->size > 0 || framing->end_count > 1 || framing->separator.size > 0)) {
-        wrong = "sum: one behind the end (expected no length, one end, no separator)";
+    if (length->size == 0) {
+        return framing->sums_length ? "sums_length: expected a length" : NULL;
     }
+    if (length->base != 10 && length->base != 16 && length->base != 256) {
+        return "length: a base of its digits (expected 10, 16 or 256)";
+    }
+    if (framing->timeout_us == 0) {
+        return "timeout: 0 (expected above 0 beside a length)";
+    }
+    return framing->has_escape ? "escape: expected none beside a length" : NULL;
+}
+
+static const char *find_wrong_place(const wh_framing_t *framing) {
+    const bool is_apart =
+        framing->length.size == 0 && framing->end_count == 1 && framing->separator.size == 0;
+    return is_apart ? NULL : "sum: one behind the end (expected no length, one end, no separator)";
+}
+
+static const char *find_wrong_sum(const wh_framing_t *framing) {
+    if (framing->sum == WH_SUM_NONE) {
+        const bool is_told = framing->sums_as_bytes || framing->sums_length || framing->sum_is_behind;
+        return is_told ? "sum: none (expected another one, for something says more of it)" : NULL;
+    }
+    if (framing->sum_is_behind) {
+        return find_wrong_place(framing);
+    }
+    if (framing->sums_end) {
+        return "sums_end: expected a sum behind the end";
+    }
+    const bool is_lost = framing->sums_as_bytes && framing->length.size == 0;
+    return is_lost ? "sum: one of bytes (expected it beside a length, or behind the end)" : NULL;
+}
+
+static bool check_length(const wh_framing_t *framing, char *problem) {
+    const char *wrong = find_wrong_length(framing);
+    wrong = wrong ? wrong : find_wrong_sum(framing);
     (void)snprintf(problem, WH_FRAMING_PROBLEM_BYTES, "%s", wrong ? wrong : "");
     return !wrong;
 }
@@ -413,14 +429,9 @@ static size_t append_sum(const wh_framing_t *framing, uint8_t *to, size_t at, ui
                                   : append_bytes(to, at, digits, size);
 }
 
-size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
-                         uint8_t frame[WH_FRAMING_LINE]) {
-    uint8_t told[WH_FRAMING_LENGTH];
-    if (size > framing->longest || (framing->start_count > 0 && start >= framing->start_count) ||
-        !write_length(framing, start, size, told)) {
-        return 0;
-    }
-    uint8_t bytes[WH_FRAMING_LINE + 4 * WH_FRAMING_MARK];
+/* Writes a frame around a body. Returns its size; it has room for more than the longest one. */
+static size_t write_frame(const wh_framing_t *framing, size_t start, const uint8_t *told, const uint8_t *body,
+                          size_t size, uint8_t *bytes) {
     size_t length = 0;
     if (framing->start_count > 0) {
         length = append_bytes(bytes, length, framing->starts[start].bytes, framing->starts[start].size);
@@ -434,9 +445,18 @@ size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_
     if (framing->end_count > 0) {
         length = append_bytes(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
     }
-    if (framing->sum_is_behind) {
-        length = append_sum(framing, bytes, length, sum);
+    return framing->sum_is_behind ? append_sum(framing, bytes, length, sum) : length;
+}
+
+size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
+                         uint8_t frame[WH_FRAMING_LINE]) {
+    uint8_t told[WH_FRAMING_LENGTH];
+    if (size > framing->longest || (framing->start_count > 0 && start >= framing->start_count) ||
+        !write_length(framing, start, size, told)) {
+        return 0;
     }
+    uint8_t bytes[WH_FRAMING_LINE + 4 * WH_FRAMING_MARK];
+    const size_t length = write_frame(framing, start, told, body, size, bytes);
     if (length > framing->longest || !reads_back(framing, bytes, length, body, size)) {
         return 0;
     }

@@ -72,8 +72,7 @@ typedef struct {
     size_t end_count;                           /* at least 1; with a length 0 or 1 */
     wh_framing_length_t length;                 /* with it there is no escape, but a time-out */
     wh_sum_kind_t sum;
-    bool
-        sums_as_bytes; /* the sum is one byte, or two of a CRC, the high one first: with a length, or behind the end */
+    bool sums_as_bytes;          /* the sum is a byte, or two of a CRC: with a length, or behind the end */
     wh_framing_mark_t separator; /* before the digits, such as ","; no part of the body */
     bool sums_start;             /* the start counts into the sum */
     bool sums_separator;         /* the separator does */
@@ -163,8 +162,7 @@ typedef struct {
     bool told;                      /* the line was told of: with the next call it leaves, */
     size_t keeps;                   /* but without this number of last bytes, */
     size_t next;                    /* which are this start */
-    size_t
-        whole; /* with a length, or a sum behind the end: the bytes of the frame, once that is known; else 0 */
+    size_t whole;     /* the bytes of a frame with a length, or with a sum behind the end; 0: not known */
     size_t dropped;   /* bytes behind a frame that was too long; `line` then has only the last bytes */
     int passes;       /* a byte that is passed over if it comes next; -1: none */
     int64_t first_us; /* of the line */

@@ -16,8 +16,8 @@ size_t wh_framing_sum_size(const wh_framing_t *framing);
 uint16_t wh_framing_sum_over(const wh_framing_t *framing, size_t start, const uint8_t *length,
                              const uint8_t *body, size_t size);
 
-/* The bytes of the whole frame whose length these bytes are, behind a start of `start_size` bytes; 0: they are
- * no length, or less than a frame has. */
+/* The bytes of the whole frame whose length these bytes are, behind a start of `start_size` bytes; 0: they
+ * are no length, or less than a frame has. */
 size_t wh_framing_whole(const wh_framing_t *framing, size_t start_size, const uint8_t *length);
 
 /* The value of a hex digit; 16: it is not a hex digit. */

@@ -398,9 +398,35 @@ static bool refuse_unit(const wh_controller_t *controller, const char *unit, con
     return false;
 }
 
+static bool has_unit(const wh_controller_t *carrier, const char *unit) {
+    const wh_host_t *host = carrier->host;
+    bool has = false;
+    for (size_t i = 0; i + 1 < host->count; ++i) {
+        has = has ||
+              (host->controllers[i]->carrier == carrier && strcmp(host->controllers[i]->unit, unit) == 0);
+    }
+    return has;
+}
+
+/* The line is that of the dialect before it. */
+static bool share_line(wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    wh_controller_t *carrier = host->count > 1 ? host->controllers[host->count - 2]->carrier : NULL;
+    if (!carrier || !carrier->unit || strcmp(carrier->dialect->path, controller->dialect->path) != 0) {
+        return refuse_unit(
+            controller, controller->unit,
+            "a port of its own, or before it a --dialect of this file with a --unit, whose line "
+            "it shares");
+    }
+    if (has_unit(carrier, controller->unit)) {
+        return refuse_unit(controller, controller->unit, "an address that its line does not have yet");
+    }
+    controller->carrier = carrier;
+    return true;
+}
+
 /* Gives the controller its address and, if it shares one, its line. */
 static bool join_line(wh_controller_t *controller, const wh_host_port_t *port) {
-    const wh_host_t *host = controller->host;
     const wh_dialect_clients_t *clients = &controller->dialect->clients;
     controller->unit = port->unit;
     if (!port->unit) {
@@ -413,23 +439,7 @@ static bool join_line(wh_controller_t *controller, const wh_host_port_t *port) {
         return refuse_unit(controller, port->unit,
                            "a dialect with a function `unit_of` and one port that no clients share");
     }
-    if (!port->shares_line) {
-        return true;
-    }
-    wh_controller_t *carrier = host->count > 1 ? host->controllers[host->count - 2]->carrier : NULL;
-    if (!carrier || !carrier->unit || strcmp(carrier->dialect->path, controller->dialect->path) != 0) {
-        return refuse_unit(
-            controller, port->unit,
-            "a port of its own, or before it a --dialect of this file with a --unit, whose line "
-            "it shares");
-    }
-    for (size_t i = 0; i + 1 < host->count; ++i) {
-        if (host->controllers[i]->carrier == carrier && strcmp(host->controllers[i]->unit, port->unit) == 0) {
-            return refuse_unit(controller, port->unit, "an address that its line does not have yet");
-        }
-    }
-    controller->carrier = carrier;
-    return true;
+    return !port->shares_line || share_line(controller);
 }
 
 bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
@@ -443,9 +453,9 @@ bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
         return false;
     }
     wh_dialect_show(controller->dialect, layout);
-    controller->dialect->stands_for = controller->mechanism.name;
+    controller->dialect->place.stands_for = controller->mechanism.name;
     if (!controller->mechanism.name && layout) {
-        controller->dialect->stands_for = wh_mechanism_only(controller->mechanism.kind, layout);
+        controller->dialect->place.stands_for = wh_mechanism_only(controller->mechanism.kind, layout);
     }
     return wh_controller_begin_conditions(controller) &&
            open_ports(controller, port, controller->dialect->clients.ports[0]);

@@ -4,8 +4,8 @@
 
 #include "state.h"
 
-/* Enqueues the copies that chaos leaves of a frame, in either direction. Units of one line share it. A frame to the host is noted when it
- * is made: a wall clock decides when it arrives. */
+/* Enqueues the copies that chaos leaves of a frame, in either direction, on the line that units may share. A
+ * frame to the host is noted when it is made: a wall clock decides when it arrives. */
 void wh_controller_enqueue(wh_controller_t *controller, bool is_to_host, const uint8_t *bytes, size_t size,
                            int64_t due_us, bool is_acknowledgement);
 

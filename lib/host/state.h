@@ -147,8 +147,7 @@ struct wh_controller {
     wh_action_t action;
     wh_owed_ackn_t owed;
     wh_repeat_t repeat;
-    wh_status_t
-        refused_as; /* the error by which the last answer was refused as it was encoded; WH_OK: none */
+    wh_status_t refused_as; /* why the last answer was refused as it was encoded; WH_OK: it was not */
 };
 
 /* The run's time beside the wall clock's. */

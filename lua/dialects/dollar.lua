@@ -6,6 +6,8 @@
 
 local UNIT = host.unit("1")
 
+local subscribed = { wafer = true } -- kinds of events: CEVT changes them
+
 local status = "0"         -- 0 idle, 1 running, 2 held
 local last_sequence = "00" -- of the last telegram: a refusal is answered under it
 local maps = {}            -- the last map of each station
@@ -39,7 +41,7 @@ local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
   MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, MAWT = 2, MPMP = 2, MCAR = 2,
   MPRT = 2, MTKA = 1, CRST = 0,
-  CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
+  CSAV = 1, CRES = 1, CUND = 0, CEVT = 2, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
   RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 13, RAXS = 0, RLOC = 1, RVER = 0,
 }
 
@@ -211,6 +213,34 @@ local function standing(axes)
   return axes_as_fields(theirs)
 end
 
+-- The kinds of events that a host may ask for, and what is told of those that befall no wafer, in one field.
+local KINDS = { WAFER = "wafer", SENSOR = "sensor", VALVE = "valve", HOLD = "hold", POSITION = "position", ERROR = "error", DOOR = "door", MODE = "mode",
+  PORT = "port" }
+
+local function with_values(name, values, order)
+  local list = { name }
+  for _, key in ipairs(order) do
+    list[#list + 1] = values[key] and key .. "=" .. tostring(values[key])
+  end
+  return table.concat(list, ";")
+end
+
+local function at_controller(event)
+  return event.value and ("%s;%d"):format(event.at, event.value) or event.at
+end
+
+local function at_gripper(event)
+  return ("%s;%d"):format(event.gripper, event.value)
+end
+
+local OF_KIND = {
+  sensor = at_gripper, valve = at_gripper, hold = at_controller, position = at_controller,
+  error = function(event) return event.at .. ";" .. host.code(event.value) end,
+  door = function(event) return event.door .. ";" .. (event.value or "-") end,
+  mode = function(event) return with_values(event.at, event.controller, { "power", "brakes", "estop", "servo", "mode", "exceeded" }) end,
+  port = function(event) return with_values(event.at, event.load_port, { "is", "does", "carrier", "failed" }) end,
+}
+
 -- Keeps the result for RFND.
 local function keep(request, result)
   found[request.command] = told(request, result)
@@ -224,6 +254,8 @@ return {
   },
   units = { length = 0.001, angle = 0.001 },
   unit_of = function(frame) return split(frame:sub(2))[1] end,
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
+  gone = function() subscribed = { wafer = true } end,
   decode = decode,
 
   commands = {
@@ -316,6 +348,11 @@ return {
       local percent = tonumber(request.arguments[1]) or host.refuse("BAD_ARGUMENT", request.arguments[1])
       return ("CONTROLLER override=%.17g"):format(percent / 100)
     end },
+    CEVT = { does = "LOCAL", run = function(request)
+      local kind = KINDS[request.arguments[1] or ""] or host.refuse("BAD_ARGUMENT", request.arguments[1])
+      subscribed[kind] = choose(request.arguments[2], { ["1"] = "on", ["0"] = "off" }) == "on"
+      return ""
+    end },
     RPMP = { does = "PORT_MAP", run = at_station("PORT_MAP"), answer = function(request, result)
       if not result.values.codes then
         host.refuse("NOT_MAPPED", request.arguments[1])
@@ -376,6 +413,12 @@ return {
       return codes[reason] and telegram("$", "00", codes[reason]) or nil
     end,
     event = function(event)
+      local own = OF_KIND[event.kind]
+      if not subscribed[own and event.kind or "wafer"] then
+        return nil
+      elseif own then
+        return "," .. table.concat({ UNIT, "EVNT", event.kind, whole(event.seconds * 1000), field(own(event)) }, ","), ">"
+      end
       return "," .. table.concat({ UNIT, "EVNT", event.kind, whole(event.seconds * 1000), field(event.wafer),
         field(event.gripper) }, ","), ">"
     end,

@@ -134,7 +134,7 @@ return {
     bad = function(reason) return "-712 Invalid syntax: " .. reason end,
     event = function(event)
       local port = event.load_port
-      return event.port == "events" and ("1 %s %s %s"):format(port.is, port.carrier or "-", port.failed or port.does or "-") or nil
+      return port and event.port == "events" and ("1 %s %s %s"):format(port.is, port.carrier or "-", port.failed or port.does or "-") or nil
     end,
   },
   errors = {

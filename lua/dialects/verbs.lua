@@ -4,6 +4,7 @@
 
 local OBJECT = "ROB1"
 
+local subscribed = { wafer = true } -- kinds of events: EVNT changes them
 local last_verb = "----" -- of the last frame: a refusal is answered under it
 local maps = {}
 local found = {} -- the results of the last command of each verb
@@ -28,7 +29,7 @@ local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
   TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, PUMP = 2, AWAT = 2, CARR = 2, PORT = 2, TAKE = 1,
   MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0, ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
-  GVER = 0,
+  GVER = 0, EVNT = 2,
 }
 
 local function decode(frame)
@@ -167,6 +168,31 @@ local function arms(result)
   return table.concat(list, ",")
 end
 
+-- By the kinds of events that a host may ask for: what is told of those that befall no wafer, in one argument.
+local function with_values(name, values, order)
+  local list = { name }
+  for _, key in ipairs(order) do
+    list[#list + 1] = values[key] and key .. "=" .. tostring(values[key])
+  end
+  return table.concat(list, ";")
+end
+
+local function at_controller(event)
+  return event.value and ("%s;%d"):format(event.at, event.value) or event.at
+end
+
+local function at_gripper(event)
+  return ("%s;%d"):format(event.gripper, event.value)
+end
+
+local OF_KIND = {
+  sensor = at_gripper, valve = at_gripper, hold = at_controller, position = at_controller,
+  error = function(event) return event.at .. ";" .. host.code(event.value) end,
+  door = function(event) return event.door .. ";" .. (event.value or "-") end,
+  mode = function(event) return with_values(event.at, event.controller, { "power", "brakes", "estop", "servo", "mode", "exceeded" }) end,
+  port = function(event) return with_values(event.at, event.load_port, { "is", "does", "carrier", "failed" }) end,
+}
+
 local function position(_, result)
   return axes_as_fields(result.position)
 end
@@ -174,6 +200,8 @@ end
 return {
   name = "frames as object.verb(arguments)",
   framing = { ends = { "\r", "\r\n" }, longest = 512, timeout = 5 },
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
+  gone = function() subscribed = { wafer = true } end,
   decode = decode,
 
   commands = {
@@ -259,6 +287,18 @@ return {
       end
       return ("CONTROLLER %s=%s"):format(name, value)
     end },
+    EVNT = { does = "LOCAL", run = function(request)
+      local kind = request.arguments[1] or ""
+      if kind ~= "wafer" and not OF_KIND[kind] then
+        host.refuse("BAD_ARGUMENT", kind)
+      end
+      local on = request.arguments[2]
+      if on ~= "on" and on ~= "off" then
+        host.refuse("BAD_ARGUMENT", on)
+      end
+      subscribed[kind] = on == "on"
+      return ""
+    end },
     SPED = { does = "CONTROLLER", run = function(request)
       local percent = tonumber(request.arguments[1]) or host.refuse("BAD_ARGUMENT", request.arguments[1])
       return ("CONTROLLER override=%.17g"):format(percent / 100)
@@ -313,6 +353,12 @@ return {
     end,
     bad = function() return ("n%s.----:0010"):format(OBJECT) end,
     event = function(event)
+      local own = OF_KIND[event.kind]
+      if not subscribed[own and event.kind or "wafer"] then
+        return nil
+      elseif own then
+        return ("e%s.EVNT(%s,%s,%s)"):format(OBJECT, event.kind, number(event.seconds), field(own(event)))
+      end
       return ("e%s.WAFR(%s,%s,%s,%s)"):format(OBJECT, event.kind, number(event.seconds), field(event.wafer),
         field(event.gripper))
     end,

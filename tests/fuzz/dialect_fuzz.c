@@ -18,9 +18,10 @@
 #define FRAME_END 0x1E
 #define AS_IT_IS 0x1D
 
-static const char *const paths[] = {"lua/dialects/prompt.lua",  "lua/dialects/words.lua",
-                                    "lua/dialects/dollar.lua",  "lua/dialects/verbs.lua",
-                                    "lua/dialects/control.lua", "lua/dialects/numbered.lua"};
+static const char *const paths[] = {"lua/dialects/prompt.lua",       "lua/dialects/words.lua",
+                                    "lua/dialects/dollar.lua",       "lua/dialects/verbs.lua",
+                                    "lua/dialects/control.lua",      "lua/dialects/numbered.lua",
+                                    "lua/dialects/numbered_port.lua"};
 static const wh_client_t client = {"", 1};
 static const char status[] =
     "phase=idle seq=1965 time=1.965 theta=0 r=300 z=900 yaw=-1.5 EE.holds=\"Wafer 1\" PA.holds=none "

@@ -382,11 +382,8 @@ static void forms_of_lengths(void **state) {
     assert_int_equal(framer.counters.frames[WH_FRAME_BAD_SUM], 1);
 }
 
-/* STX, a body with escapes, ETX, and behind it the exclusive or of body and ETX, whatever byte that is. */
-static void sums_behind(void **state) {
-    (void)state;
+static wh_framing_t with_lrc(void) {
     wh_framing_t framing = wh_framing_default();
-    uint8_t frame[WH_FRAMING_LINE];
     framing.starts[0] = (wh_framing_mark_t){"\x02", 1};
     framing.start_count = 1;
     framing.ends[0] = (wh_framing_mark_t){"\x03", 1};
@@ -396,6 +393,35 @@ static void sums_behind(void **state) {
     framing.sum = WH_SUM_XOR;
     framing.sum_is_behind = framing.sums_end = framing.sums_as_bytes = true;
     framing.timeout_us = 5000;
+    return framing;
+}
+
+/* With its sum a frame would be too long: this is told at its end. */
+static void longest_with_sum_behind(void **state) {
+    (void)state;
+    const wh_framing_t framing = with_lrc();
+    uint8_t frame[WH_FRAMING_LINE];
+    begin(&framing);
+    uint8_t longest[WH_FRAMING_LINE];
+    memset(longest, 'a', sizeof longest);
+    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 3, frame), WH_FRAMING_LINE);
+    feed_bytes(frame, WH_FRAMING_LINE, 12000);
+    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 2, frame), 0);
+    longest[0] = 2;
+    longest[WH_FRAMING_LINE - 1] = 3;
+    feed_bytes(longest, WH_FRAMING_LINE, 12000);
+    assert_int_equal(framer.counters.frames[WH_FRAME_TOO_LONG], 1);
+    feed_bytes("\x02"
+               "ab\x03\x00",
+               5, 12000);
+    assert_string_equal(heard + strlen(heard) - 8, "good:ab;");
+}
+
+/* STX, a body with escapes, ETX, and behind it the exclusive or of body and ETX, whatever byte that is. */
+static void sums_behind(void **state) {
+    (void)state;
+    wh_framing_t framing = with_lrc();
+    uint8_t frame[WH_FRAMING_LINE];
     /* 'a' ^ 'b' ^ 3 = 0, a byte 0; 'c' ^ 'b' ^ 3 = 2, a start. */
     assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"ab", 2, frame), 5);
     assert_memory_equal(frame,
@@ -423,20 +449,6 @@ static void sums_behind(void **state) {
     feed_bytes(frame, 7, 12000);
     feed_bytes("xy\x03", 3, 12000);
     assert_string_equal(heard, "good:\x03\x02;garbage:xy\x03;");
-    /* With its sum it would be too long: this is told at its end. */
-    uint8_t longest[WH_FRAMING_LINE];
-    memset(longest, 'a', sizeof longest);
-    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 3, frame), WH_FRAMING_LINE);
-    feed_bytes(frame, WH_FRAMING_LINE, 12000);
-    assert_int_equal(wh_framing_encode(&framing, 0, longest, WH_FRAMING_LINE - 2, frame), 0);
-    longest[0] = 2;
-    longest[WH_FRAMING_LINE - 1] = 3;
-    feed_bytes(longest, WH_FRAMING_LINE, 12000);
-    assert_int_equal(framer.counters.frames[WH_FRAME_TOO_LONG], 1);
-    feed_bytes("\x02"
-               "ab\x03\x00",
-               5, 12000);
-    assert_string_equal(heard + strlen(heard) - 8, "good:ab;");
     framing.sums_as_bytes = false;
     framing.sum = WH_SUM_ADD;
     assert_int_equal(wh_framing_encode(&framing, 0, (const uint8_t *)"ab", 2, frame), 6);
@@ -555,11 +567,21 @@ static void descriptions(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines),           cmocka_unit_test(sums),        cmocka_unit_test(a_crc),
-        cmocka_unit_test(escapes),         cmocka_unit_test(lost_bytes),  cmocka_unit_test(pauses),
-        cmocka_unit_test(too_long),        cmocka_unit_test(writing),     cmocka_unit_test(descriptions),
-        cmocka_unit_test(lengths),         cmocka_unit_test(bad_lengths), cmocka_unit_test(forms_of_lengths),
-        cmocka_unit_test(damaged_lengths), cmocka_unit_test(sums_behind),
+        cmocka_unit_test(lines),
+        cmocka_unit_test(sums),
+        cmocka_unit_test(a_crc),
+        cmocka_unit_test(escapes),
+        cmocka_unit_test(lost_bytes),
+        cmocka_unit_test(pauses),
+        cmocka_unit_test(too_long),
+        cmocka_unit_test(writing),
+        cmocka_unit_test(descriptions),
+        cmocka_unit_test(lengths),
+        cmocka_unit_test(bad_lengths),
+        cmocka_unit_test(forms_of_lengths),
+        cmocka_unit_test(damaged_lengths),
+        cmocka_unit_test(sums_behind),
+        cmocka_unit_test(longest_with_sum_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
