@@ -91,6 +91,18 @@ static bool add_port(wh_host_t *host, const wh_host_port_t *port) {
     return (host->count > 0 && wh_host_needs_port(host) ? wh_host_add_port : wh_host_add)(host, port);
 }
 
+/* Checks a port that was added against its head. */
+static bool is_as_told(const wh_transcript_t *played, size_t port, const wh_controller_t *added) {
+    const wh_transcript_head_t *head = &played->heads[port];
+    const char *line = find_more(played, port, "line");
+    const size_t length = strlen(added->name);
+    if (line && strcmp(line, added->carrier->name) != 0) {
+        return refuse_line(played, head->line, "its line is that of another port than the one before it");
+    }
+    return (strncmp(added->name, head->text, length) == 0 && head->text[length] == ' ') ||
+           refuse_line(played, head->line, "the dialect is of another mechanism than its port");
+}
+
 /* Adds each port's dialect, from `port "NAME FILE"`. */
 static bool add_ports(wh_host_t *host) {
     const wh_transcript_t *played = host->played;
@@ -112,9 +124,8 @@ static bool add_ports(wh_host_t *host) {
             fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect->message);
             return false;
         }
-        const char *name = host->controllers[at++]->name;
-        if (strncmp(name, head->text, strlen(name)) != 0 || head->text[strlen(name)] != ' ') {
-            return refuse_line(played, head->line, "the dialect is of another mechanism than its port");
+        if (!is_as_told(played, i, host->controllers[at++])) {
+            return false;
         }
     }
     return true;

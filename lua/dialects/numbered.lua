@@ -4,7 +4,8 @@
 -- client at `motion` goes. Joints are 1 z, 2 shoulder, 3 elbow, 4 wrist, 5 gripper, 6 rail; mm and degrees. A location names the
 -- nest that is nearest to it. A robot without one of the joints 1 to 4 has no answer to `wherej`: -2800. A tester may tell "estop on",
 -- "hand elbow 170" (moved by hand, or back without a value) and "overshoot elbow 134.062", beyond its travel, which homing mends.
--- Power, emergency stop and overshoot are the state of the robot's controller, `now.controller`.
+-- Power, brakes, emergency stop and overshoot are the state of the robot's controller, `now.controller`. A set brake holds all joints until
+-- it is released, or power comes. While joints are free, `freemode`, nothing moves.
 
 local AXES = { "z", "theta", "forearm", "yaw", "gripper", "rail" }
 local JOINTS = { z = 1, shoulder = 2, elbow = 3, wrist = 4, gripper = 5, rail = 6 }
@@ -17,7 +18,7 @@ local attached = false
 local payload, monitor, selected = 0, 100, 1
 local shown = {}       -- joints that were moved by hand: what their encoders tell
 local cut_short = false -- something was stopped or has failed: the arm comes out of a nest before it picks or places
-local free = {}        -- joints that can be moved by hand
+local free = {}        -- joints that can be moved by hand: nothing else moves the robot meanwhile
 local profiles, locations, signals, parameters, parameter_count = {}, {}, {}, {}, 0
 local width, open_width, close_width = 125, 125, 85
 local grasp = { 85, 50, 10 }
@@ -137,6 +138,12 @@ local function check_power(request, now)
   end
 end
 
+local function check_free()
+  if next(free) then
+    fail(-1000, "Joints are free: freemode -1 ends that")
+  end
+end
+
 local function check_hands()
   for place, at in pairs(shown) do
     fail(-1012, ("Joint out-of-range: joint %d at %s"):format(place, text_of(at + 0.0)))
@@ -154,6 +161,7 @@ end
 
 local function check_motion(request, now)
   check_power(request, now)
+  check_free()
   check_joints(now)
 end
 
@@ -301,9 +309,12 @@ local commands = {
     if now.controller.estop == "on" then
       fail(-1028, "Hard E-Stop")
     end
-    return "CONTROLLER power=on"
+    return "CONTROLLER power=on brakes=released"
   end },
-  ["hp 0"] = { does = "CONTROLLER", run = function() return "CONTROLLER power=off" end },
+  ["hp 0"] = { does = "CONTROLLER", run = function()
+    free = {}
+    return "CONTROLLER power=off"
+  end },
   attach = value(function() return attached and -1 or 0 end, function(words, request)
     if request.port ~= "motion" then
       fail(-1009, "No robot attached")
@@ -476,11 +487,17 @@ local commands = {
   end),
   zerotorque = ask(function(words, now, request)
     check_power(request, now)
-    free = whole(words[1], 0, 1) == 1 and { whole(words[2] or "1") } or {}
+    free = whole(words[1], 0, 1) == 1 and { [whole(words[2] or "1", 1, 6)] = true } or {}
     return ""
   end),
-  releasebrake = ask(function(words) whole(words[1], 1, 6) return "" end),
-  setbrake = ask(function(words) whole(words[1], 1, 6) return "" end),
+  releasebrake = { does = "CONTROLLER", run = function(request)
+    whole(request.words[1], 1, 6)
+    return "CONTROLLER brakes=released"
+  end },
+  setbrake = { does = "CONTROLLER", run = function(request)
+    whole(request.words[1], 1, 6)
+    return "CONTROLLER brakes=set"
+  end },
 
   -- Motions.
   movej = motion(function(words, now)
@@ -532,6 +549,7 @@ local commands = {
 
   home = { does = "HOME", run = function(request, now)
     check_power(request, now)
+    check_free()
     check_hands()
     return "HOME"
   end },
@@ -629,7 +647,7 @@ return {
   begins = "CONTROLLER power=off",
   gone = function(client)
     if client.port == "motion" then
-      attached, rail_next = false, nil
+      attached, rail_next, free = false, nil, {}
       return "CONTROLLER power=off"
     end
   end,
