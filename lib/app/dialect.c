@@ -77,6 +77,26 @@ static void print_times(const wh_dialect_t *dialect, bool (*is_one)(const wh_dia
     }
 }
 
+/* Prints what is unusual in the frames. */
+static void print_framing(const wh_dialect_t *dialect) {
+    const wh_framing_t *framing = &dialect->framing;
+    const wh_framing_length_t *length = &framing->length;
+    static const char *const counts[] = {"body", "body and its sum", "whole frame"};
+    if (length->size > 0) {
+        printf("frames tell their length: %zu %s of the %s\n", length->size,
+               length->base == 256  ? "bytes"
+               : length->base == 16 ? "hex digits"
+                                    : "digits",
+               counts[length->counts]);
+    }
+    if (framing->has_escape) {
+        printf("a mark in a body has the byte %02X before it\n", framing->escape);
+    }
+    if (framing->sum_is_behind) {
+        puts("the sum stands behind the end");
+    }
+}
+
 static void print_order(const wh_dialect_t *dialect) {
     const wh_dialect_clients_t *clients = &dialect->clients;
     for (size_t i = 0; clients->port_count > 1 && i < clients->port_count; ++i) {
@@ -193,6 +213,7 @@ int wh_app_dialect(int argc, char **argv) {
     } else {
         printf("%s, for the %s: %zu commands\n", dialect.name, wh_mechanism_names[dialect.mechanism],
                dialect.command_count);
+        print_framing(&dialect);
         print_order(&dialect);
         print_commands(&dialect, false);
         print_commands(&dialect, true);
