@@ -94,6 +94,7 @@ static void end_clean(const wh_flow_station_t *of, wh_clock_place_t *place, int3
         settle(of, place);
     } else {
         place->phase = WH_CLOCK_FREE;
+        place->empty_us = WH_FLOW_NEVER;
     }
 }
 
@@ -120,11 +121,16 @@ void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
     }
 }
 
+/* True if the empty place is cleaned for want of wafers, now or later: once until the next wafer has left. */
+static bool has_idle_clean(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    return place->phase == WH_CLOCK_FREE && of->clean_us > 0 && place->empty_us != WH_FLOW_NEVER &&
+           wh_flow_treatment(of, place->recipe).idle_us != WH_FLOW_NEVER;
+}
+
 /* Until a clean of an empty place is due; INFINITY: never. */
 static double until_idle_clean(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
     const int64_t idle_us = wh_flow_treatment(of, place->recipe).idle_us;
-    const bool comes = place->phase == WH_CLOCK_FREE && of->clean_us > 0 && idle_us != WH_FLOW_NEVER;
-    return comes ? (double)(idle_us - (now_us - place->empty_us)) : (double)INFINITY;
+    return has_idle_clean(of, place) ? (double)(idle_us - (now_us - place->empty_us)) : (double)INFINITY;
 }
 
 double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
@@ -141,8 +147,8 @@ double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
 /* ------------------------------------------------------------------------------------ wafers come and go */
 
 static bool is_idle_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
-    const int64_t idle_us = wh_flow_treatment(of, place->recipe).idle_us;
-    return of->clean_us > 0 && idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= idle_us;
+    return has_idle_clean(of, place) &&
+           now_us - place->empty_us >= wh_flow_treatment(of, place->recipe).idle_us;
 }
 
 bool wh_clock_is_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {

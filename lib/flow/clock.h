@@ -43,7 +43,7 @@ typedef struct {
     int64_t begun_us;            /* when that began */
     int64_t done_us;             /* when the wafer's process ended; without one, when the wafer came */
     int64_t lifted_us;           /* when it was lifted last */
-    int64_t empty_us;            /* FREE: since when */
+    int64_t empty_us;            /* FREE: since when; WH_FLOW_NEVER: and cleaned since */
 } wh_clock_place_t;
 
 typedef struct {

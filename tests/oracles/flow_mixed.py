@@ -3,8 +3,7 @@ the model, which shares no code with the engine. Wafers end where the model has 
 
     flow_mixed.py PROGRAM FOLDER LEVEL FIRST COUNT     prints the seeds that differ; exit 1 if there are any
 
-Doors, ports, slots for one way alone and cleans for want of wafers are left out: the first two are real in such a cell, the third it
-has not, and the last come again and again by the station's own clock."""
+Doors, ports and slots for one way alone are left out: the first two are real in such a cell, the third it has not."""
 import json
 import math
 import pathlib
@@ -24,8 +23,6 @@ def plain(tool, flow):
     for station in tool["stations"]:
         for field in ("doors", "ways", "load_port"):
             station.pop(field, None)
-        if (station.get("clean") or {}).get("idle"):
-            station["clean"] = {**station["clean"], "idle": None} if station["clean"].get("after") else None
     for lot in flow["lots"]:
         lot["arrives"] = 0
 

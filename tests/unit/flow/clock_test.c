@@ -173,6 +173,34 @@ static void a_clean_comes_without_wafers(void **state) {
     assert_int_equal(places[0].phase, WH_CLOCK_DONE);
 }
 
+/* Once, until the next wafer has left; also if the clean was one that wafers had brought about. */
+static void a_place_that_was_cleaned_is_clean(void **state) {
+    (void)state;
+    begin(0, 0, S);
+    station.idle_us = 4 * S;
+    pass(5 * S);
+    assert_int_equal(told_count, 4);
+    assert_true(isinf(wh_clock_quiet_us(&station, &clock_, places, now_us)));
+    pass(100 * S);
+    assert_int_equal(told_count, 4);
+    assert_false(wh_clock_is_clean_due(&station, &places[0], now_us));
+    bring_and_take(1);
+    told_count = 0;
+    pass(5 * S);
+    assert_told(0, WH_CLOCK_CLEAN_BEGINS, WH_FLOW_NONE, now_us - S, S);
+    pass(100 * S);
+    assert_int_equal(told_count, 2);
+    begin(0, 1, S);
+    station.idle_us = 4 * S;
+    bring_and_take(1);
+    pass(S);
+    told_count = 0;
+    pass(3 * S); /* the other place is cleaned for want of wafers */
+    pass(100 * S);
+    assert_int_equal(told_count, 2);
+    assert_int_equal(told[0].slot, 1);
+}
+
 static void a_lock_pumps_with_and_without_a_wafer(void **state) {
     (void)state;
     begin(0, 0, 0);
@@ -304,6 +332,7 @@ int main(void) {
         cmocka_unit_test(a_clean_comes_after_its_wafers),
         cmocka_unit_test(a_clean_around_a_wafer_follows_its_process),
         cmocka_unit_test(a_clean_comes_without_wafers),
+        cmocka_unit_test(a_place_that_was_cleaned_is_clean),
         cmocka_unit_test(a_lock_pumps_with_and_without_a_wafer),
         cmocka_unit_test(a_stay_goes_on_until_the_wafer_has_left),
         cmocka_unit_test(a_process_that_never_began_is_told),
