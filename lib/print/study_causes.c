@@ -29,7 +29,7 @@ static void find_end(const wh_study_result_t *result, wh_cause_told_t *told) {
             }
         }
     }
-    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+    for (size_t f = 0; f < WH_FLOW_SUM_RELATED; ++f) {
         const wh_correlation_t end = wh_tally_relate(tally, told->index, (wh_flow_sum_t)f);
         if (strength_of(&end) > strength_of(&told->end)) {
             told->end = end;
@@ -118,7 +118,7 @@ static json_t *end(const void *subject, size_t w) {
 
 static json_t *flow_ends(const wh_tally_t *tally, size_t cause) {
     json_t *object = json_object();
-    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+    for (size_t f = 0; f < WH_FLOW_SUM_RELATED; ++f) {
         const wh_correlation_t found = wh_tally_relate(tally, cause, (wh_flow_sum_t)f);
         wh_json_put(object, wh_flow_sum_names[f], correlation(&found));
     }

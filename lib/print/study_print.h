@@ -23,9 +23,10 @@
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
  *   flow:         of a script with a flow: unfinished (trials whose flow did not come to its end with all
  *                 wafers: without a makespan), unsteady (whose cycle is the mean over the middle third of the
- *                 wafers), no_cycle (with fewer than nine wafers: without one), and makespan_s,
- *                 cycle_s, per_hour (null: no trial has it): { without_errors, count, mean, deviation, min,
- *                 p0_1, ..., max }
+ *                 wafers), no_cycle (with fewer than nine wafers: without one), and makespan_s, cycle_s,
+ *                 per_hour, robots_wait_s and wafers_wait_s (all of them together; of wafers that are done),
+ *                 late_stays (their number, beyond windows; each null: no trial has it): { without_errors,
+ *                 count, mean, deviation, min, p0_1, ..., max }
  *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with
  *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam,
  *                 process), of (a name;
@@ -36,7 +37,7 @@
  *                 determined
  *   worst:        trial, ok, off (of the wafer farthest off; null: one is
  *                 elsewhere), why (it failed, in words; null: it is ok), of a script with a flow its
- *                 makespan_s, cycle_s, per_hour, drawn: { wafers,
+ *                 figures, as above, drawn: { wafers,
  *                 stations, rims, beams, valves, vacuum_s, processes (name, process_s) } what the trial
  *                 drew: of each wafer { name, dx, dy, dz, tilt_x, tilt_y, turn }, of each station { name,
  *                 x, y, z, roll, pitch, yaw } (mm, degrees), of each rim { name, diameter, ... }
@@ -74,7 +75,7 @@ json_t *wh_study_to_json(const wh_study_result_t *result);
 /* Each trial as a line of CSV, by RFC 4180 but with lines that end with a line feed. The tally has the
  * lines of all trials. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations
  * were missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off
- * mm; of a script with a flow its makespan_s, cycle_s and per_hour; of each wafer dX, dY, dz (mm) and tilt
+ * mm; of a script with a flow its figures, as in JSON; of each wafer dX, dY, dz (mm) and tilt
  * (deg) in its slot, empty if it is elsewhere; and what the trial drew, of each error whose width is not
  * 0, told as a cause or not. Numbers read back as the same double. 0, or -1 if writing failed. */
 int wh_study_print_csv(const wh_study_result_t *result, FILE *out);

@@ -166,7 +166,8 @@ static double within(double value, const wh_flow_spread_t *spread) {
 }
 
 static void add_figure(const table_t *table, wh_grid_t *grid, wh_flow_sum_t figure) {
-    static const char *const names[] = {"makespan s", "cycle s", "wafers/h"};
+    static const char *const names[WH_FLOW_SUM_FIGURES] = {"makespan s",    "cycle s",       "wafers/h",
+                                                           "robots wait s", "wafers wait s", "late stays"};
     static const uint32_t permille[] = {1, 50, 500, 950, 999};
     const wh_flow_sums_t *flow = table->tally->flow;
     const double *without = table->study->study->flow;

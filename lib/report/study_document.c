@@ -13,8 +13,9 @@
 /* The most points of a cloud; more trials would only cover each other. */
 #define MOST_POINTS 5000
 
-/* A histogram of the sums, from the smallest to the largest value; a single value gets room around it. */
-static json_t *histogram(const wh_sum_t *sum, double nominal) {
+/* A histogram of the sums, which are `scale` times as large beside the nominal value, from the smallest to
+ * the largest one. A single value gets room around it. */
+static json_t *histogram(const wh_sum_t *sum, double nominal, double scale) {
     double counts[BARS];
     const double low = wh_sum_least(sum);
     const double high = wh_sum_most(sum);
@@ -27,7 +28,8 @@ static json_t *histogram(const wh_sum_t *sum, double nominal) {
     for (size_t i = 0; i < BARS; ++i) {
         wh_json_append(list, wh_json_real(floor(10 * counts[i] + 0.5) / 10));
     }
-    json_t *object = wh_json_set(json_object(), "low %g high %g", nominal + low, nominal + high);
+    json_t *object =
+        wh_json_set(json_object(), "low %g high %g", nominal + scale * low, nominal + scale * high);
     return wh_json_add(object, "counts", list, NULL);
 }
 
@@ -51,7 +53,7 @@ static json_t *wafer(const void *subject, size_t w) {
     json_t *histograms = json_object();
     json_t *limits = json_array();
     for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
-        wh_json_put(histograms, keys[q], histogram(&document->tally->wafers[w].of[q], nominal[q]));
+        wh_json_put(histograms, keys[q], histogram(&document->tally->wafers[w].of[q], nominal[q], 1));
     }
     for (size_t i = 0; i < decisions->claim_count; ++i) {
         json_t *made = limit(end, &decisions->claims[i]);
@@ -60,6 +62,18 @@ static json_t *wafer(const void *subject, size_t w) {
         }
     }
     return wh_json_add(json_object(), "limits histograms", limits, histograms, NULL);
+}
+
+/* How the figures of the flow spread; null: no trial had one. */
+static json_t *flow(const wh_study_document_t *document) {
+    const wh_flow_sums_t *sums = document->tally->flow;
+    json_t *histograms = sums ? json_object() : json_null();
+    for (int f = 0; sums && f < WH_FLOW_SUM_FIGURES; ++f) {
+        const double without = document->study->flow[f];
+        wh_json_put(histograms, wh_flow_sum_names[f],
+                    histogram(&sums->of[f], isnan(without) ? 0 : without, WH_FLOW_SUM_SCALE));
+    }
+    return histograms;
 }
 
 /* ------------------------------------------------------------------------------------------------- points */
@@ -113,8 +127,8 @@ int wh_study_document_write(const wh_study_document_t *document, FILE *out) {
     (void)wh_json_set(points, "of %lld", (json_int_t)document->tally->trials);
     json_t *root = wh_json_set(json_object(), "format %d title %s version %s command %s", 1,
                                study->run.script, WH_VERSION, document->command);
-    (void)wh_json_add(root, "result wafers points", json_incref(document->result),
-                      wh_json_list(wafer, document, study->wafer_count), points, NULL);
+    (void)wh_json_add(root, "result wafers points flow", json_incref(document->result),
+                      wh_json_list(wafer, document, study->wafer_count), points, flow(document), NULL);
     const int status = json_dumpf(root, out, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(root);
     return status;

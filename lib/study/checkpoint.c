@@ -12,7 +12,7 @@
 #include "../text/output.h"
 #include "identity.h"
 
-#define FORMAT 7
+#define FORMAT 8
 /* The first byte of a state. */
 #define BEGIN '{'
 /* The check stands behind all bytes that it covers: `,"check":"0123456789abcdef"}`. */
@@ -125,12 +125,15 @@ static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
 /* Infinite is null. */
 static json_t *put_worst(const void *subject, size_t i) {
     const wh_tally_trial_t *trial = &((const wh_tally_t *)subject)->worst[i];
-    return json_pack("[I, b, o, b, I, I, I, I, I, I, I, o, o, o]", (json_int_t)trial->trial, trial->met,
+    json_t *flow = json_array();
+    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+        wh_json_append(flow, wh_json_real(trial->flow[f]));
+    }
+    return json_pack("[I, b, o, b, I, I, I, I, I, I, I, o]", (json_int_t)trial->trial, trial->met,
                      wh_json_real(trial->off), trial->ended, (json_int_t)trial->missed,
                      (json_int_t)trial->errors, (json_int_t)trial->elsewhere, (json_int_t)trial->kinds,
                      (json_int_t)trial->missed_line, (json_int_t)trial->error, (json_int_t)trial->error_line,
-                     wh_json_real(trial->flow[0]), wh_json_real(trial->flow[1]),
-                     wh_json_real(trial->flow[2]));
+                     flow);
 }
 
 /* Null is NaN. */
@@ -144,25 +147,26 @@ static bool take_worst(const json_t *list, wh_tally_t *tally) {
         json_int_t number;
         json_int_t counts[7];
         int met, ended;
-        const json_t *off, *flow[WH_FLOW_SUM_FIGURES];
-        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I, I, I, o, o, o]", &number,
-                            &met, &off, &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4],
-                            &counts[5], &counts[6], &flow[0], &flow[1], &flow[2]) == 0 &&
-                number >= 0;
+        const json_t *off, *flow;
+        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I, I, I, o]", &number, &met,
+                            &off, &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4],
+                            &counts[5], &counts[6], &flow) == 0 &&
+                number >= 0 && json_array_size(flow) == WH_FLOW_SUM_FIGURES;
         if (sound) {
-            const wh_tally_trial_t trial = {.trial = (uint64_t)number,
-                                            .met = met != 0,
-                                            .ended = ended != 0,
-                                            .missed = (uint32_t)counts[0],
-                                            .errors = (uint32_t)counts[1],
-                                            .elsewhere = (uint32_t)counts[2],
-                                            .kinds = (uint32_t)counts[3],
-                                            .missed_line = (uint32_t)counts[4],
-                                            .error = (uint32_t)counts[5],
-                                            .error_line = (uint32_t)counts[6],
-                                            .off =
-                                                json_is_null(off) ? (double)INFINITY : json_number_value(off),
-                                            .flow = {real_of(flow[0]), real_of(flow[1]), real_of(flow[2])}};
+            wh_tally_trial_t trial = {.trial = (uint64_t)number,
+                                      .met = met != 0,
+                                      .ended = ended != 0,
+                                      .missed = (uint32_t)counts[0],
+                                      .errors = (uint32_t)counts[1],
+                                      .elsewhere = (uint32_t)counts[2],
+                                      .kinds = (uint32_t)counts[3],
+                                      .missed_line = (uint32_t)counts[4],
+                                      .error = (uint32_t)counts[5],
+                                      .error_line = (uint32_t)counts[6],
+                                      .off = json_is_null(off) ? (double)INFINITY : json_number_value(off)};
+            for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+                trial.flow[f] = real_of(json_array_get(flow, f));
+            }
             wh_tally_note_worst(tally, &trial);
         }
     }
@@ -221,10 +225,22 @@ static json_t *put_lines(const wh_trial_lines_t *lines) {
 }
 
 static json_t *put_flow(const wh_flow_sums_t *flow) {
-    return flow ? json_pack("[I, I, I, I, o, o, o]", (json_int_t)flow->trials, (json_int_t)flow->unfinished,
-                            (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle, put_sum(&flow->of[0]),
-                            put_sum(&flow->of[1]), put_sum(&flow->of[2]))
-                : json_null();
+    if (!flow) {
+        return json_null();
+    }
+    json_t *list = json_pack("[I, I, I, I]", (json_int_t)flow->trials, (json_int_t)flow->unfinished,
+                             (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle);
+    for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
+        wh_json_append(list, put_sum(&flow->of[f]));
+    }
+    return list;
+}
+
+/* A flow that was cut has no makespan, and all of these. */
+static bool are_waits_possible(const wh_flow_sums_t *flow) {
+    const uint64_t count = flow->of[WH_FLOW_SUM_ROBOTS_WAIT].count;
+    return count <= flow->trials && count >= flow->of[WH_FLOW_SUM_MAKESPAN].count &&
+           flow->of[WH_FLOW_SUM_WAFERS_WAIT].count == count && flow->of[WH_FLOW_SUM_LATE].count == count;
 }
 
 /* True if so many trials can have these counts. */
@@ -233,7 +249,7 @@ static bool is_flow_possible(const wh_flow_sums_t *flow, uint64_t trials) {
            flow->unsteady <= trials - flow->no_cycle &&
            flow->of[WH_FLOW_SUM_MAKESPAN].count == trials - flow->unfinished &&
            flow->of[WH_FLOW_SUM_CYCLE].count == trials - flow->no_cycle &&
-           flow->of[WH_FLOW_SUM_PER_HOUR].count == trials - flow->no_cycle;
+           flow->of[WH_FLOW_SUM_PER_HOUR].count == trials - flow->no_cycle && are_waits_possible(flow);
 }
 
 static bool take_flow(const wh_study_t *study, const json_t *list, wh_tally_t *tally) {

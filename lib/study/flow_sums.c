@@ -1,10 +1,12 @@
 #include "flow_sums.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-#define SCALE 1024.0
+#include "../flow/waits.h"
 
-const char *const wh_flow_sum_names[] = {"makespan_s", "cycle_s", "per_hour", NULL};
+const char *const wh_flow_sum_names[] = {"makespan_s",    "cycle_s",    "per_hour", "robots_wait_s",
+                                         "wafers_wait_s", "late_stays", NULL};
 
 static double without_of(const double without[], wh_flow_sum_t figure) {
     return isnan(without[figure]) ? 0 : without[figure];
@@ -15,6 +17,20 @@ static double cycle_of(const wh_flow_result_t *result) {
     return result->period > 0    ? (double)result->cycle_us / 1e6 / result->period
            : result->mean_us > 0 ? result->mean_us / 1e6
                                  : (double)NAN;
+}
+
+/* Robots' waits have a cause; those of done wafers have none. */
+static void read_waits(const wh_flow_figures_t *of, double figures[WH_FLOW_SUM_FIGURES]) {
+    size_t count = 0;
+    wh_flow_wait_t *waits = wh_flow_waits(of, &count);
+    int64_t robots_us = 0, wafers_us = 0;
+    for (size_t i = 0; i < count; ++i) {
+        int64_t *const us = waits[i].cause ? &robots_us : &wafers_us;
+        *us += waits[i].us;
+    }
+    free(waits);
+    figures[WH_FLOW_SUM_ROBOTS_WAIT] = (double)robots_us / 1e6;
+    figures[WH_FLOW_SUM_WAFERS_WAIT] = (double)wafers_us / 1e6;
 }
 
 bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES]) {
@@ -30,11 +46,13 @@ bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES
     }
     figures[WH_FLOW_SUM_CYCLE] = cycle_of(result);
     figures[WH_FLOW_SUM_PER_HOUR] = 3600 / figures[WH_FLOW_SUM_CYCLE];
+    read_waits(&flow->figures, figures);
+    figures[WH_FLOW_SUM_LATE] = (double)flow->figures.stays.late_count;
     return result->period > 0;
 }
 
 double wh_flow_sums_aside(const double figures[], const double without[], wh_flow_sum_t figure) {
-    return (figures[figure] - without_of(without, figure)) / SCALE;
+    return (figures[figure] - without_of(without, figure)) / WH_FLOW_SUM_SCALE;
 }
 
 void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady) {
@@ -63,11 +81,12 @@ wh_flow_spread_t wh_flow_sums_spread(const wh_flow_sums_t *sums, wh_flow_sum_t f
                                      const double without[]) {
     const wh_sum_t *of = &sums->of[figure];
     const double from = without_of(without, figure);
-    return (wh_flow_spread_t){from + SCALE * wh_sum_mean(of), SCALE * wh_sum_deviation(of),
-                              from + SCALE * wh_sum_least(of), from + SCALE * wh_sum_most(of)};
+    return (wh_flow_spread_t){
+        from + WH_FLOW_SUM_SCALE * wh_sum_mean(of), WH_FLOW_SUM_SCALE * wh_sum_deviation(of),
+        from + WH_FLOW_SUM_SCALE * wh_sum_least(of), from + WH_FLOW_SUM_SCALE * wh_sum_most(of)};
 }
 
 double wh_flow_sums_quantile(const wh_flow_sums_t *sums, wh_flow_sum_t figure, const double without[],
                              uint32_t permille) {
-    return without_of(without, figure) + SCALE * wh_sum_quantile(&sums->of[figure], permille);
+    return without_of(without, figure) + WH_FLOW_SUM_SCALE * wh_sum_quantile(&sums->of[figure], permille);
 }

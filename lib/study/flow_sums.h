@@ -1,4 +1,5 @@
-/* How the figures of a flow spread over trials: makespan, cycle, wafers per hour.
+/* How the figures of a flow spread over trials: makespan, cycle, wafers per hour; how long robots waited, all
+ * together, and done wafers; and how many stays were longer than their stations' windows.
  *
  * Times that are drawn seldom repeat: where there is no steady cycle it is the mean time between two wafers'
  * ends, over their middle third.
@@ -12,10 +13,20 @@
 #include "../flow/figures.h"
 #include "sum.h"
 
-typedef enum { WH_FLOW_SUM_MAKESPAN, WH_FLOW_SUM_CYCLE, WH_FLOW_SUM_PER_HOUR } wh_flow_sum_t;
-#define WH_FLOW_SUM_FIGURES 3
+typedef enum {
+    WH_FLOW_SUM_MAKESPAN,
+    WH_FLOW_SUM_CYCLE,
+    WH_FLOW_SUM_PER_HOUR,
+    WH_FLOW_SUM_ROBOTS_WAIT,
+    WH_FLOW_SUM_WAFERS_WAIT,
+    WH_FLOW_SUM_LATE
+} wh_flow_sum_t;
+#define WH_FLOW_SUM_FIGURES 6
 
-/* "makespan_s", "cycle_s", "per_hour" */
+/* Those at the beginning that are related with what is drawn. */
+#define WH_FLOW_SUM_RELATED 3
+
+/* "makespan_s", "cycle_s", "per_hour", "robots_wait_s", "wafers_wait_s", "late_stays" */
 extern const char *const wh_flow_sum_names[];
 
 /* To be zeroed. */
@@ -27,8 +38,11 @@ typedef struct {
     wh_sum_t of[WH_FLOW_SUM_FIGURES];
 } wh_flow_sums_t;
 
-/* Fills in the figures: s, s, wafers per hour; NaN for one that the flow does not have. Null: no flow was
- * played, and all are NaN. True if the cycle is a steady one. */
+/* The sums' unit, in a figure's own. */
+#define WH_FLOW_SUM_SCALE 1024.0
+
+/* Fills in the figures: s, s, wafers per hour, s, s, a number; NaN for one that the flow does not have. Null:
+ * no flow was played, and all are NaN. True if the cycle is a steady one. */
 bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES]);
 
 /* How far a trial's figure is from that of the run without errors, as it is summed. */

@@ -267,7 +267,7 @@ static void relate_flow(wh_tally_t *tally, const wh_study_t *study, const double
     if (tally->flow_at == SIZE_MAX) {
         return;
     }
-    for (size_t i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
+    for (size_t i = 0; i < WH_FLOW_SUM_RELATED; ++i) {
         const size_t end = i == WH_FLOW_SUM_MAKESPAN ? 0 : 1;
         ends[end][i - end] = wh_flow_sums_aside(figures, study->flow, (wh_flow_sum_t)i);
     }

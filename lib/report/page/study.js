@@ -147,6 +147,32 @@
         host().append(made);
     }
 
+    const FIGURES = { makespan_s: 'makespan, s', cycle_s: 'cycle, s', per_hour: 'wafers per hour',
+        robots_wait_s: 'robots wait, all together, s', wafers_wait_s: 'done wafers wait, all together, s',
+        late_stays: 'stays beyond windows' };
+
+    /* How makespan, rate, waits and breaches of windows spread. */
+    function flow(doc) {
+        const told = doc.result.flow;
+        if (!told) {
+            return;
+        }
+        const known = Object.keys(FIGURES).filter((key) => told[key]);
+        const rows = known.map((key) => () => {
+            const of = told[key];
+            const found = [of.without_errors, of.mean, of.deviation, of.min, of.p5, of.p50, of.p95, of.max];
+            return W.tables.row([FIGURES[key], ...found.map((value) => num(value === null ? W.DASH : W.figure(value)))]);
+        });
+        const bars = known.filter((key) => doc.flow[key]).map((key) => W.charts.histogram(doc.flow[key], FIGURES[key]));
+        const without = [[told.unfinished, 'did not bring all wafers to their ends: without a makespan'],
+            [told.unsteady, 'have no steady cycle: their means over the middle third of the wafers count'],
+            [told.no_cycle, 'have too few wafers for a cycle']].filter(([count]) => count > 0)
+            .map(([count, why]) => W.element('p', { class: 'note' }, `${count} of the trials ${why}.`));
+        const heads = ['', 'without errors', 'mean', 'deviation', 'min', '5 %', '50 %', '95 %', 'max'];
+        host().append(W.tables.section('flow', 'The flow', heads, rows, 'No trial brought wafers to their ends.'),
+        group('flow-spread', 'How its figures spread', ...without, W.element('div', { class: 'histograms' }, ...bars)));
+    }
+
     const nameOf = (cause) => `${cause.of ? cause.of + ' ' : ''}${W.words(cause.what)}`;
 
     function causes(doc) {
@@ -165,23 +191,30 @@
     }
 
     function worst(doc) {
+        const isFlow = doc.result.flow && doc.result.wafers.length === 0;
         const rows = doc.result.worst.map((each) => () => {
             const button = W.element('button', { type: 'button', class: 'time', title: 'Show this trial',
                 click: () => choose(doc, each.trial) }, String(each.trial));
-            const off = each.off === null ? 'elsewhere' : W.number(each.off, 4);
+            const far = isFlow ? each.makespan_s : each.off;
+            const missing = isFlow ? 'no end' : 'elsewhere';
+            const off = far === null ? missing : W.number(far, isFlow ? 3 : 4);
             const made = W.tables.row([button, each.ok ? 'ok' : 'failed', num(off), each.why || ''], each.ok ? '' : 'bad');
             made.dataset.trial = each.trial;
             return made;
         });
         host().append(group('chosen', 'One trial',
             W.why('Click a trial, here below or among the points, to have the command that plays it again.')),
-        W.tables.section('worst', 'The worst trials: failed ones first, then those that leave a wafer farthest off',
-            ['trial', 'result', 'off (mm)', 'why'], rows, 'There are none.'));
+        W.tables.section('worst', isFlow ? 'The worst trials: failed ones first, then those whose flow took longest'
+            : 'The worst trials: failed ones first, then those that leave a wafer farthest off',
+        ['trial', 'result', isFlow ? 'makespan (s)' : 'off (mm)', 'why'], rows, 'There are none.'));
     }
 
     function show(doc) {
         head(doc);
-        wafers(doc);
+        flow(doc);
+        if (doc.result.wafers.length > 0 || !doc.result.flow) {
+            wafers(doc);
+        }
         worst(doc);
         causes(doc);
         tables(doc);
