@@ -82,6 +82,7 @@ static wh_live_state_t state_of(const wh_live_t *live) {
                              .pace = live->meter.pace,
                              .control = controlled[control->controlled],
                              .lists_faults = control->controlled == WH_LIVE_TESTER,
+                             .lists_robots = control->controlled == WH_LIVE_RUN,
                              .is_paused = __atomic_load_n(&control->is_paused, __ATOMIC_RELAXED)};
 }
 
@@ -271,7 +272,9 @@ static wh_news_t *news_of_end(const wh_mcs_t *mcs) {
 }
 
 static wh_news_t *news_of_hold(const wh_mcs_t *mcs, bool is_held) {
-    wh_news_t *news = wh_news_make(WH_NEWS_HELD, wh_mcs_utime(mcs), NULL, NULL);
+    char robots[WH_MCS_HOLD_BYTES];
+    wh_mcs_name_held(mcs, robots);
+    wh_news_t *news = wh_news_make(WH_NEWS_HELD, wh_mcs_utime(mcs), robots, NULL);
     news->good = is_held;
     return news;
 }
@@ -324,6 +327,16 @@ static void hear_turn(void *user, const wh_mcs_t *mcs, const char *what) {
     }
 }
 
+static void take_holds(void *user, wh_mcs_t *mcs) {
+    wh_live_t *live = user;
+    if (live->next.flow_slice) {
+        live->next.flow_slice(live->next.user, mcs);
+    }
+    if (live->control.controlled == WH_LIVE_RUN) {
+        wh_live_hold_take(&live->control.hold, mcs);
+    }
+}
+
 void wh_live_tell(wh_live_t *live, wh_news_t *news) {
     if (live->showing) {
         wh_showing_tell(live->showing, news);
@@ -342,6 +355,7 @@ wh_mcs_listener_t wh_live_listener(wh_live_t *live, const wh_mcs_listener_t *nex
                                .begins = begin,
                                .tell = hear_news,
                                .turn = hear_turn,
+                               .flow_slice = take_holds,
                                .user = live};
 }
 

@@ -20,6 +20,8 @@
 #define MOST_SLICES 1000000
 #define MOST_LINE 1000
 
+#define EXPECTED "expected token and one of pause, slices, command, rate, line, hold, continue"
+
 enum { OK = 200, ACCEPTED = 202, BAD = 400, FORBIDDEN = 403, UNAVAILABLE = 503 };
 
 /* ------------------------------------------------------------------------------------ the stepping thread */
@@ -203,6 +205,52 @@ static unsigned take_pause(wh_live_control_t *control, const json_t *request, ch
     return done(answer);
 }
 
+/* The reason may have names in it. */
+static unsigned refuse_hold(wh_status_t status, const char *reason, char **answer) {
+    char text[WH_MCS_HOLD_BYTES + 100];
+    (void)snprintf(text, sizeof text, "error %d %s: %s", (int)status, wh_status_name(status), reason);
+    json_t *told = wh_json_set(json_object(), "ok %i text %s", false, text);
+    *answer = wh_memory_need(json_dumps(told, JSON_COMPACT));
+    json_decref(told);
+    return BAD;
+}
+
+static unsigned hold_robot(wh_live_control_t *control, const json_t *given, bool is_held, char **answer) {
+    char reason[WH_MCS_HOLD_BYTES];
+    const char *name = json_is_string(given) ? json_string_value(given) : "";
+    const bool is_name = json_is_string(given) && name[0] && strlen(name) < WH_NAME_SIZE;
+    if (control->controlled != WH_LIVE_RUN) {
+        return refuse(BAD, "hold, continue: hosts have a HOLD of their own (expected run --page-control)",
+                      answer);
+    }
+    if (!is_name && !json_is_true(given)) {
+        return refuse(BAD, "hold, continue: expected a robot's name, or true for all of them", answer);
+    }
+    if (__atomic_load_n(&control->is_paused, __ATOMIC_ACQUIRE)) {
+        return refuse(BAD, "hold, continue: the run is paused (expected it to go on)", answer);
+    }
+    const wh_status_t status = wh_live_hold_ask(&control->hold, name, is_held, reason);
+    return status == WH_OK ? done(answer) : refuse_hold(status, reason, answer);
+}
+
+/* True if the request has one of these. */
+static bool has_any(const json_t *request, const char *const keys[], size_t count) {
+    bool has = false;
+    for (size_t i = 0; i < count; ++i) {
+        has = has || json_object_get(request, keys[i]);
+    }
+    return has;
+}
+
+static unsigned take_rest(wh_live_control_t *control, const json_t *request, char **answer) {
+    static const char *const holds[] = {"hold", "continue"}, *const pauses[] = {"pause", "slices", "command"};
+    const json_t *hold = json_object_get(request, "hold");
+    if (has_any(request, holds, 2)) {
+        return hold_robot(control, hold ? hold : json_object_get(request, "continue"), hold != NULL, answer);
+    }
+    return has_any(request, pauses, 3) ? take_pause(control, request, answer) : refuse(BAD, EXPECTED, answer);
+}
+
 static unsigned take(wh_live_control_t *control, const json_t *request, char **answer) {
     json_t *rate = json_object_get(request, "rate");
     json_t *line = json_object_get(request, "line");
@@ -211,15 +259,12 @@ static unsigned take(wh_live_control_t *control, const json_t *request, char **a
                       answer);
     }
     if (json_object_size(request) != 2) {
-        return refuse(BAD, "expected token and one of pause, slices, command, rate, line", answer);
+        return refuse(BAD, EXPECTED, answer);
     }
     if (rate || line) {
         return rate ? set_rate(control, rate, answer) : take_line(control, line, answer);
     }
-    const bool is_known = json_object_get(request, "pause") || json_object_get(request, "slices") ||
-                          json_object_get(request, "command");
-    return is_known ? take_pause(control, request, answer)
-                    : refuse(BAD, "expected token and one of pause, slices, command, rate, line", answer);
+    return take_rest(control, request, answer);
 }
 
 unsigned wh_live_control_take(wh_live_control_t *control, const char *body, size_t size, char **answer) {

@@ -1,6 +1,7 @@
 /* --page-control: who has the token may pause, step and pace a run, or is a tester of `serve`.
  *
- * A run is only held up: no request changes its commands or its hash. A tester's requests go to the tester's
+ * A run is only held up: no request changes its commands or its hash, but a HOLD of a flow's robot, which
+ * changes when they come. A tester's requests go to the tester's
  * port of `serve` as JSON lines, so a transcript has them and plays them again.
  */
 #ifndef WH_APP_LIVE_CONTROL_H
@@ -10,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "live_hold.h"
 #include "live_pace.h"
 
 /* Hex digits of a token. */
@@ -27,10 +29,11 @@ typedef struct {
     char token[WH_LIVE_TOKEN + 1];
     bool is_paused;       /* atomic */
     bool ends_at_command; /* atomic: pause when a command has ended */
-    int64_t slices;       /* atomic: that may pass while it is paused */
-    int64_t rate_ppm;     /* atomic: the rate, times 1e6; 0: no waiting */
-    char tester[80];      /* the address of the tester's port */
-    int fd;               /* the connection to it */
+    wh_live_hold_t hold;
+    int64_t slices;   /* atomic: that may pass while it is paused */
+    int64_t rate_ppm; /* atomic: the rate, times 1e6; 0: no waiting */
+    char tester[80];  /* the address of the tester's port */
+    int fd;           /* the connection to it */
     bool is_connected;
     uint64_t requests; /* so far */
 } wh_live_control_t;
@@ -48,7 +51,8 @@ void wh_live_control_slice(wh_live_control_t *control, wh_live_pace_t *pace, int
 void wh_live_control_command(wh_live_control_t *control, void (*rest)(void *user), void *user);
 
 /* Takes a request of the page, JSON of `size` bytes, { token, and one of: pause (true or false), slices,
- * command (true), rate, line }. Returns HTTP's status, and the answer as JSON in `answer`, to be freed. */
+ * command (true), rate, line, hold or continue (a robot's name, or true: all) }. Returns HTTP's status, and
+ * the answer as JSON in `answer`, to be freed. */
 unsigned wh_live_control_take(wh_live_control_t *control, const char *body, size_t size, char **answer);
 
 /* Reads what the tester's port has answered, which comes back as its frames. */

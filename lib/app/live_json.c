@@ -91,11 +91,27 @@ static json_t *fault(const void *nothing, size_t i) {
     return json_string(wh_fault_name((wh_fault_kind_t)i));
 }
 
+/* Those that are times alone stand behind the others. */
+static json_t *robots_of(const wh_layout_t *layout) {
+    json_t *list = json_array();
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        wh_json_append(list, wh_json_text(layout->robots[r].name));
+    }
+    for (size_t r = 0; layout->timed && r < layout->timed->robot_count; ++r) {
+        wh_json_append(list, wh_json_text(layout->timed->robots[r].name));
+    }
+    return list;
+}
+
 static json_t *state_of(const wh_live_kept_t *kept, const wh_live_state_t *state) {
     json_t *object =
         wh_json_set(json_object(), "rate %g pace %g over %i dropped %i control %s paused %i held %i",
                     state->rate > 0 ? state->rate : HUGE_VAL, state->pace >= 0 ? state->pace : HUGE_VAL,
                     kept->is_over, kept->has_dropped, state->control, state->is_paused, kept->is_held);
+    (void)wh_json_set(object, "held_robots %s", kept->held);
+    if (state->lists_robots) {
+        wh_json_put(object, "robots", robots_of(kept->record.layout));
+    }
     if (state->lists_faults) {
         wh_json_put(object, "faults", wh_json_list(fault, NULL, WH_FAULT_KINDS));
     }

@@ -23,6 +23,7 @@ void wh_live_kept_begin(wh_live_kept_t *kept, const wh_layout_t *layout) {
     wh_record_free(&kept->record);
     free_frames(kept);
     free(kept->failure);
+    free(kept->held);
     *kept = (wh_live_kept_t){.is_anew = true};
     if (layout) {
         kept->record.layout = layout;
@@ -191,8 +192,10 @@ static void take_rest(wh_live_kept_t *kept, const wh_news_t *news) {
         wh_record_add_station_event(record, &news->station);
         break;
     case WH_NEWS_HELD:
-        kept->has_news = kept->has_news || kept->is_held != news->good;
+        kept->has_news = true;
         kept->is_held = news->good;
+        free(kept->held);
+        kept->held = news->text && news->text[0] ? wh_text_copy(news->text) : NULL;
         break;
     case WH_NEWS_ENDED:
         kept->is_over = kept->has_news = true;

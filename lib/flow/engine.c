@@ -5,6 +5,7 @@
 
 #include "../text/array.h"
 #include "failed.h"
+#include "held.h"
 #include "locks.h"
 #include "outside.h"
 #include "robots.h"
@@ -40,19 +41,8 @@ static void pass_on(void *context, const wh_flow_state_t *state, int64_t to_us) 
 
 /* ----------------------------------------------------------------------------------------------- instants */
 
-static void end_holds(const wh_flow_state_t *state) {
-    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
-        const wh_flow_robot_state_t *robot = &state->robots[r];
-        if (robot->held_us > 0 && robot->held_us == state->now_us) {
-            wh_flow_event_t held = wh_flow_event_of_station(WH_FLOW_EVENT_HELD, WH_FLOW_NONE,
-                                                            robot->held_began_us, state->now_us);
-            held.robot = r;
-            wh_flow_tell(state, &held);
-        }
-    }
-}
-
 static void end_all(wh_flow_state_t *state) {
+    wh_flow_take_holds(state);
     wh_flow_stations_end(state);
     if (state->outside) {
         state->outside->hear(state->outside->context, state);
@@ -63,7 +53,7 @@ static void end_all(wh_flow_state_t *state) {
             wh_flow_robot_end(state, r);
         }
     }
-    end_holds(state);
+    wh_flow_end_holds(state);
     if (state->outside) {
         wh_flow_end_told(state);
         state->outside->look(state->outside->context, state);

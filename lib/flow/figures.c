@@ -6,6 +6,7 @@
 #include "../math/hash.h"
 #include "../text/array.h"
 #include "failed.h"
+#include "history.h"
 #include "transfer.h"
 #include "waiting.h"
 
@@ -34,9 +35,8 @@ struct wh_flow_measure {
     wh_flow_engine_t engine;
     wh_flow_figures_t *figures;
     place_t *places;
-    aside_t *asides;       /* by place */
-    int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
-    wh_flow_visit_t *open; /* by wafer: the transfer that runs */
+    aside_t *asides; /* by place */
+    wh_flow_history_t history;
     wh_flow_log_t log;
     wh_flow_keep_t keeps;
 };
@@ -118,96 +118,6 @@ static void blame(measure_t *measure, const wh_flow_state_t *state, const wh_flo
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- visits */
-
-static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
-    measure->open[stay->wafer] = (wh_flow_visit_t){.wafer = stay->wafer,
-                                                   .step = stay->step + 1,
-                                                   .robot = stay->robot,
-                                                   .from = stay->place,
-                                                   .place = WH_FLOW_NONE,
-                                                   .pick_us = stay->end_us,
-                                                   .picked_us = WH_FLOW_NEVER,
-                                                   .place_us = WH_FLOW_NEVER,
-                                                   .placed_us = WH_FLOW_NEVER,
-                                                   .process_us = WH_FLOW_NEVER,
-                                                   .done_us = WH_FLOW_NEVER};
-}
-
-/* A lot may arrive before its port is free; its wafers come when it is. */
-static void note_coming(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t wafer) {
-    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    if (at->step == 0 && at->place != WH_FLOW_NONE) {
-        figures->came_us[wafer] = at->entered_us;
-    }
-}
-
-static void keep_visit(measure_t *measure, int32_t wafer) {
-    wh_flow_figures_t *figures = measure->figures;
-    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
-                                    sizeof *figures->visits);
-    measure->visits[wafer] = (int32_t)figures->visit_count;
-    figures->visits[figures->visit_count++] = measure->open[wafer];
-}
-
-static void end_visit(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event,
-                      int32_t wafer) {
-    wh_flow_visit_t *visit = &measure->open[wafer];
-    visit->step = state->wafers[wafer].toward;
-    visit->is_end = measure->places[event->place].is_over;
-    visit->place = event->place;
-    visit->arm = event->arm;
-    visit->place_us = event->begin_us;
-    visit->placed_us = event->end_us;
-    keep_visit(measure, wafer);
-}
-
-/* A real door opens for the robot that takes the wafer. */
-static bool is_real_door_opening(const wh_flow_state_t *state, const wh_flow_wafer_state_t *wafer) {
-    const wh_flow_robot_state_t *robot = &state->robots[wafer->taker];
-    return robot->action == WH_FLOW_OPENING &&
-           state->tool->doors[wh_flow_of(state->tool, wafer->taker, robot->station)].is_real;
-}
-
-/* Those of wafers that are under way when the flow ends; a door that opens is no visit yet. */
-static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
-    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
-        const wh_flow_wafer_state_t *wafer = &state->wafers[w];
-        note_coming(measure->figures, state, w);
-        const bool is_taken = wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us;
-        if (is_taken && !(wafer->robot == WH_FLOW_NONE && is_real_door_opening(state, wafer))) {
-            measure->open[w].step = wafer->toward != WH_FLOW_NONE ? wafer->toward : wafer->step + 1;
-            measure->open[w].arm =
-                wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
-            keep_visit(measure, w);
-        }
-    }
-}
-
-static void note_process(measure_t *measure, const wh_flow_event_t *event) {
-    if (measure->visits[event->wafer] != WH_FLOW_NONE) {
-        wh_flow_visit_t *visit = &measure->figures->visits[measure->visits[event->wafer]];
-        visit->process_us = event->begin_us;
-        visit->done_us = event->end_us;
-    }
-}
-
-static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event) {
-    figures->doings = wh_array_grow(figures->doings, figures->doing_count, &figures->doing_capacity,
-                                    sizeof *figures->doings);
-    figures->doings[figures->doing_count++] = (wh_flow_doing_t){
-        event->kind, event->station, event->place, event->robot, event->side, event->begin_us, event->end_us};
-}
-
-static void note_way(measure_t *measure, const wh_flow_event_t *event) {
-    wh_flow_ways_t *ways = &measure->figures->ways;
-    if (measure->keeps == WH_FLOW_WAYS && event->end_us > event->begin_us && event->from != WH_FLOW_NONE) {
-        ways->items = wh_array_grow(ways->items, ways->count, &ways->capacity, sizeof *ways->items);
-        ways->items[ways->count++] =
-            (wh_flow_way_t){event->robot, event->from, event->station, event->begin_us, event->end_us};
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------- events */
 
 static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
@@ -218,10 +128,7 @@ static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh
     if (event->step > 0 && !state->tool->stations[event->station].is_real) {
         wh_flow_stays_add(&measure->figures->stays, state, event);
     }
-    if (measure->open) {
-        note_coming(measure->figures, state, event->wafer);
-        begin_visit(measure, event);
-    }
+    wh_flow_history_take(&measure->history, state, event);
 }
 
 static void hear_placing(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
@@ -238,12 +145,7 @@ static void hear_placing(measure_t *measure, const wh_flow_state_t *state, const
         measure->figures->fates[wafer] = WH_FLOW_FATE_SHORTENED;
     }
     ++measure->figures->placed[event->station];
-    if (measure->open) {
-        end_visit(measure, state, event, wafer);
-    }
-    if (measure->open && event->kind == WH_FLOW_EVENT_SWAP) {
-        measure->open[event->wafer].picked_us = event->end_us;
-    }
+    wh_flow_history_place(&measure->history, state, event, wafer, measure->places[event->place].is_over);
 }
 
 /* A route ends where its wafer lies, lost or shortened. */
@@ -252,8 +154,8 @@ static void hear_end(measure_t *measure, const wh_flow_state_t *state, const wh_
     account_wafer(measure, state, event->wafer, event->end_us);
     measure->places[event->place].is_over = true;
     measure->figures->fates[event->wafer] = is_lost ? WH_FLOW_FATE_LOST : WH_FLOW_FATE_SHORTENED;
-    if (!is_lost && measure->open && measure->visits[event->wafer] != WH_FLOW_NONE) {
-        measure->figures->visits[measure->visits[event->wafer]].is_end = true;
+    if (!is_lost) {
+        wh_flow_history_shorten(&measure->history, event->wafer);
     }
 }
 
@@ -264,29 +166,6 @@ static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
         hash = wh_hash_word(hash, (uint64_t)numbers[i]);
     }
     return hash;
-}
-
-/* Timed ones open and shut in the times of the tool. */
-static bool is_real_door(const wh_flow_tool_t *tool, const wh_flow_event_t *event) {
-    return event->kind == WH_FLOW_EVENT_SHUT ||
-           (event->kind == WH_FLOW_EVENT_OPEN &&
-            tool->doors[wh_flow_of(tool, event->robot, event->station)].is_real);
-}
-
-/* Where visits are kept: what else they tell, and what happened beside them. */
-static void note_event(measure_t *measure, const wh_flow_event_t *event) {
-    const bool is_doing = event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
-                          event->kind == WH_FLOW_EVENT_DOWN || event->kind == WH_FLOW_EVENT_COMES ||
-                          event->kind == WH_FLOW_EVENT_GOES || is_real_door(measure->figures->tool, event);
-    if (event->kind == WH_FLOW_EVENT_PICK) {
-        measure->open[event->wafer].picked_us = event->end_us;
-    } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
-        note_process(measure, event);
-    } else if (event->kind == WH_FLOW_EVENT_MOVE) {
-        note_way(measure, event);
-    } else if (is_doing) {
-        note_doing(measure->figures, event);
-    }
 }
 
 static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
@@ -308,9 +187,7 @@ static void hear(void *context, const wh_flow_state_t *state, const wh_flow_even
     if (measure->keeps != WH_FLOW_SUMS) {
         wh_flow_log_add(&measure->log, event);
     }
-    if (measure->open) {
-        note_event(measure, event);
-    }
+    wh_flow_history_hear(&measure->history, event);
 }
 
 /* One of them at a time: a clean before a pump, a pump before a failure. */
@@ -389,40 +266,6 @@ static void keep_fate(wh_flow_figures_t *figures, const wh_flow_state_t *state, 
     }
 }
 
-static void keep_running(wh_flow_runnings_t *running, int32_t place, int32_t wafer, int64_t begin_us) {
-    running->items =
-        wh_array_grow(running->items, running->count, &running->capacity, sizeof *running->items);
-    running->items[running->count++] = (wh_flow_running_t){place, wafer, begin_us};
-}
-
-/* Keeps what goes on in the place: nobody tells its end. */
-static void note_running(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t number) {
-    const wh_flow_place_t *place = &state->places[number];
-    const wh_flow_station_t *of = &state->tool->stations[state->tool->place_stations[number]];
-    const int32_t wafer = place->wafer;
-    if (of->is_real) {
-        return;
-    }
-    if (place->clean_us != WH_FLOW_NEVER) {
-        keep_running(&figures->running, number, WH_FLOW_NONE, place->clean_us - of->clean_us);
-    }
-    if (wafer == WH_FLOW_NONE || state->wafers[wafer].is_over ||
-        state->wafers[wafer].done_us <= state->now_us) {
-        return;
-    }
-    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    const int64_t processed_us = at->done_us - at->clean_us;
-    if (at->process_us > 0 && processed_us - at->process_us <= state->now_us) {
-        keep_running(&figures->running, number, wafer, processed_us - at->process_us);
-    }
-}
-
-static void note_all_running(wh_flow_figures_t *figures, const wh_flow_state_t *state) {
-    for (size_t p = 0; p < state->tool->place_count; ++p) {
-        note_running(figures, state, (int32_t)p);
-    }
-}
-
 /* Keeps how each wafer's route ended, and how long it has stayed. */
 static void end_wafers(measure_t *measure, const wh_flow_state_t *state) {
     wh_flow_event_t stay;
@@ -447,10 +290,7 @@ static void end(void *context, const wh_flow_state_t *state) {
                   measure->places[p].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
         }
     }
-    if (measure->open) {
-        keep_open_visits(measure, state);
-        note_all_running(measure->figures, state);
-    }
+    wh_flow_history_end(&measure->history, state);
     measure->figures->end_us = state->now_us;
 }
 
@@ -472,17 +312,6 @@ static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool,
     wh_flow_stays_open(&figures->stays, tool);
 }
 
-/* Room for visits, and for the transfers that run. */
-static void keep_visits(measure_t *measure, wh_flow_figures_t *figures, size_t wafers) {
-    measure->visits = wh_array_new(wafers, sizeof *measure->visits);
-    figures->came_us = wh_array_new(wafers, sizeof *figures->came_us);
-    for (size_t w = 0; w < wafers; ++w) {
-        figures->came_us[w] = WH_FLOW_NEVER;
-    }
-    measure->open = wh_array_new(wafers, sizeof *measure->open);
-    memset(measure->visits, 0xff, wafers * sizeof *measure->visits);
-}
-
 wh_flow_measure_t *wh_flow_measure_open(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                                         wh_flow_keep_t keeps, const wh_flow_outside_t *outside,
                                         wh_flow_figures_t *figures) {
@@ -493,7 +322,7 @@ wh_flow_measure_t *wh_flow_measure_open(const wh_flow_tool_t *tool, const wh_flo
                            .asides = wh_array_new(tool->place_count, sizeof *measure->asides)};
     open_figures(figures, tool, plan);
     if (keeps == WH_FLOW_VISITS || keeps == WH_FLOW_WAYS) {
-        keep_visits(measure, figures, plan->wafer_count);
+        wh_flow_history_open(&measure->history, figures, plan->wafer_count, keeps == WH_FLOW_WAYS);
     }
     const wh_flow_listener_t listener = {measure, hear, advance, end};
     wh_flow_engine_open(&measure->engine, tool, plan, &listener, outside);
@@ -514,8 +343,7 @@ void wh_flow_measure_close(wh_flow_measure_t *measure) {
     free(measure->log.events);
     free(measure->places);
     free(measure->asides);
-    free(measure->visits);
-    free(measure->open);
+    wh_flow_history_close(&measure->history);
     free(measure);
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "calls.h"
+#include "held.h"
 #include "transfer.h"
 
 /* --------------------------------------------------------------------------------------- between instants */
@@ -46,7 +47,7 @@ void wh_flow_learn(wh_flow_state_t *state, int32_t robot) {
     }
     wh_flow_tool_t *tool = state->outside->tool;
     const size_t of = wh_flow_of(tool, robot, at->station);
-    const int64_t us = state->now_us - at->since_us;
+    const int64_t us = state->now_us - at->since_us - wh_flow_stood_us(state, robot);
     int64_t *const time_us = at->action == WH_FLOW_OPENING   ? &tool->doors[of].open_us
                              : at->action == WH_FLOW_PICKING ? &tool->pick_us[of]
                              : at->action == WH_FLOW_PLACING ? &tool->place_us[of]
@@ -193,7 +194,7 @@ void wh_flow_see_port(wh_flow_state_t *state, int32_t station, bool is_open, boo
 }
 
 bool wh_flow_is_real_busy(const wh_flow_state_t *state) {
-    bool is_busy = false;
+    bool is_busy = wh_flow_is_any_asked(state);
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         const wh_flow_station_state_t *station = &state->stations[i];
         is_busy = is_busy || is_port_busy(state, (int32_t)i) || station->real.runs ||

@@ -75,7 +75,7 @@ void wh_flow_set_down(const wh_flow_state_t *state, int32_t station, bool is_dow
 /* Ends what was told between two instants, but robots' actions. */
 void wh_flow_end_told(wh_flow_state_t *state);
 
-/* True while something real goes on, whose end will be told. */
+/* True while something real goes on, whose end will be told, or a request holds a robot. */
 bool wh_flow_is_real_busy(const wh_flow_state_t *state);
 
 #endif

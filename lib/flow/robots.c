@@ -2,6 +2,7 @@
 
 #include "calls.h"
 #include "failed.h"
+#include "held.h"
 #include "locks.h"
 #include "outside.h"
 #include "stations.h"
@@ -19,6 +20,7 @@ static void act(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action, 
     wh_flow_robot_state_t *at = &state->robots[robot];
     at->action = action;
     at->since_us = state->now_us;
+    wh_flow_stand_anew(state, robot);
     at->is_begun = wh_flow_is_played(state, robot);
     at->until_us = for_us == WH_FLOW_NEVER || at->is_begun ? WH_FLOW_NEVER : end_of(state, action, for_us);
 }
@@ -283,7 +285,8 @@ static void tell_action(const wh_flow_state_t *state, int32_t robot, wh_flow_eve
                                    .place = kind == WH_FLOW_EVENT_PICK ? at->from : at->to,
                                    .station = at->station,
                                    .from = at->from,
-                                   .step = wafer == WH_FLOW_NONE ? 0 : state->wafers[wafer].step};
+                                   .step = wafer == WH_FLOW_NONE ? 0 : state->wafers[wafer].step,
+                                   .stood_us = wh_flow_stood_us(state, robot)};
     wh_flow_tell(state, &event);
 }
 

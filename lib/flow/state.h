@@ -107,6 +107,15 @@ typedef struct wh_flow_order {
     wh_flow_side_t side;
 } wh_flow_order_t;
 
+/* A robot that a request holds: see held.h. */
+typedef struct {
+    bool is_wanted, is_told; /* told since the last instant: a request stands; it stands within its action */
+    bool is_on, stands;      /* likewise, as this instant has it */
+    int64_t since_us;        /* it stands since then */
+    int64_t stood_us;        /* how long it had stood before, in this action */
+    int64_t planned_us;      /* until then the plan holds it, too */
+} wh_flow_asked_t;
+
 typedef struct {
     wh_flow_action_t action, then; /* then: what comes after the door */
     int64_t since_us, until_us;    /* of the action; until: WH_FLOW_NEVER for those that wait */
@@ -119,6 +128,7 @@ typedef struct {
     wh_flow_order_t wish; /* the first answer of the rule when it was asked last */
     bool has_wish;
     int64_t held_us, held_began_us; /* until then, and since when, it begins nothing; 0: it is not held */
+    wh_flow_asked_t asked;          /* by a request, for as long as that stands */
     /* Real ones: the action has begun, and nobody has taken it up yet; it has ended, and that was told. */
     bool is_begun, is_ended;
 } wh_flow_robot_state_t;
@@ -150,6 +160,7 @@ typedef struct {
     int32_t place, station, from;     /* from: the station that a move comes from */
     int32_t step;
     wh_flow_side_t side;
+    int64_t stood_us; /* of an action: so long it stood still, since a request held its robot */
 } wh_flow_event_t;
 
 /* The listener of a flow. Each may be null. */

@@ -2,21 +2,15 @@
 
 #include "calls.h"
 #include "failed.h"
+#include "held.h"
 #include "locks.h"
 #include "outside.h"
 #include "transfer.h"
 
-/* Told for a station alone. */
+/* Told for a station alone, up to now. */
 static void tell(const wh_flow_state_t *state, wh_flow_event_kind_t kind, int32_t station, int64_t begin_us) {
-    const wh_flow_event_t event = {.kind = kind,
-                                   .begin_us = begin_us,
-                                   .end_us = state->now_us,
-                                   .robot = WH_FLOW_NONE,
-                                   .wafer = WH_FLOW_NONE,
-                                   .other = WH_FLOW_NONE,
-                                   .place = WH_FLOW_NONE,
-                                   .station = station,
-                                   .side = state->stations[station].side};
+    wh_flow_event_t event = wh_flow_event_of_station(kind, station, begin_us, state->now_us);
+    event.side = state->stations[station].side;
     wh_flow_tell(state, &event);
 }
 
@@ -108,28 +102,21 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
 
 /* A process ends before the clean around its wafer. */
 static void tell_process(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
-    const int64_t end_us = state->wafers[wafer].done_us - state->wafers[wafer].clean_us;
-    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_PROCESS,
-                                   .begin_us = end_us - state->wafers[wafer].process_us,
-                                   .end_us = end_us,
-                                   .robot = WH_FLOW_NONE,
-                                   .wafer = wafer,
-                                   .other = WH_FLOW_NONE,
-                                   .place = state->wafers[wafer].place,
-                                   .station = station,
-                                   .step = state->wafers[wafer].step};
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int64_t end_us = at->done_us - at->clean_us;
+    wh_flow_event_t event =
+        wh_flow_event_of_station(WH_FLOW_EVENT_PROCESS, station, end_us - at->process_us, end_us);
+    event.wafer = wafer;
+    event.place = at->place;
+    event.step = at->step;
     wh_flow_tell(state, &event);
 }
 
 static void tell_clean(const wh_flow_state_t *state, int32_t place, int32_t wafer, int64_t for_us) {
-    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
-                                   .begin_us = state->now_us - for_us,
-                                   .end_us = state->now_us,
-                                   .robot = WH_FLOW_NONE,
-                                   .wafer = wafer,
-                                   .other = WH_FLOW_NONE,
-                                   .place = place,
-                                   .station = state->tool->place_stations[place]};
+    wh_flow_event_t event = wh_flow_event_of_station(WH_FLOW_EVENT_CLEAN, state->tool->place_stations[place],
+                                                     state->now_us - for_us, state->now_us);
+    event.wafer = wafer;
+    event.place = place;
     wh_flow_tell(state, &event);
 }
 
@@ -339,19 +326,9 @@ static void hold_back(wh_flow_state_t *state, int32_t number) {
     }
 }
 
-/* Whatever it does comes to its end. */
-static void begin_hold(wh_flow_state_t *state, const wh_flow_down_t *down) {
-    wh_flow_robot_state_t *robot = &state->robots[down->robot];
-    const int64_t until_us = wh_flow_slice_us(state, state->now_us + down->for_us);
-    robot->held_began_us = robot->held_us > state->now_us ? robot->held_began_us : state->now_us;
-    robot->held_us = until_us > robot->held_us ? until_us : robot->held_us;
-    const wh_flow_problem_t held = {WH_FLOW_FAILS, down->robot, WH_FLOW_NONE, WH_FLOW_NONE, down->for_us};
-    wh_flow_tell_problem(state, &held);
-}
-
 static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     if (down->robot != WH_FLOW_NONE) {
-        begin_hold(state, down);
+        wh_flow_begin_hold(state, down);
         return;
     }
     wh_flow_station_state_t *station = &state->stations[down->station];

@@ -83,5 +83,6 @@ static wh_flow_robot_class_t doing(const wh_flow_state_t *state, int32_t robot) 
 wh_flow_robot_class_t wh_flow_robot_class(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     const bool rests = at->action == WH_FLOW_IDLE || at->action == WH_FLOW_WAITING;
-    return rests && at->held_us > state->now_us ? WH_FLOW_ROBOT_WAITS_DOWN : doing(state, robot);
+    return (rests && at->held_us > state->now_us) || at->asked.stands ? WH_FLOW_ROBOT_WAITS_DOWN
+                                                                      : doing(state, robot);
 }

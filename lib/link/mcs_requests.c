@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../mcs/flow_held.h"
 #include "../mcs/session.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
@@ -132,13 +133,14 @@ static void stop_all(wh_mcs_process_t *control, const wh_mcs_process_request_t *
     remember(control, request, WH_OK, "OK");
 }
 
-/* Finds the name behind STOP and a blank, plain or in quotes; false if the line is no such STOP. */
-static bool find_stopped(const char *line, char name[WH_LINK_LINE]) {
+/* Finds the name behind the word and a blank, plain or in quotes; false if the line is no such one. */
+static bool find_named(const char *line, const char *word, char name[WH_LINK_LINE]) {
+    const size_t word_length = strlen(word);
     line += strspn(line, " ");
-    if (strncasecmp(line, "STOP ", 5) != 0) {
+    if (strncasecmp(line, word, word_length) != 0 || line[word_length] != ' ') {
         return false;
     }
-    line += 5 + strspn(line + 5, " ");
+    line += word_length + strspn(line + word_length, " ");
     size_t length = strlen(line);
     while (length > 0 && line[length - 1] == ' ') {
         --length;
@@ -160,6 +162,61 @@ static void stop_mechanism(wh_mcs_process_t *control, const wh_mcs_process_reque
              (int)wh_utf8_cut(name, 200), name);
     wh_session_write_error(text, sizeof text, WH_STATUS_BAD_ARGUMENT, reason);
     remember(control, request, WH_STATUS_BAD_ARGUMENT, text);
+}
+
+/* HOLD or CONTINUE of a flow's robots; `name` null: of all. */
+static void hold_robot(wh_mcs_process_t *control, const wh_mcs_process_request_t *request, const char *name,
+                       bool is_held) {
+    char text[REASON_BYTES];
+    char reason[WH_MCS_HOLD_BYTES] = "no flow carries wafers now";
+    const wh_status_t error =
+        control->mcs ? wh_mcs_hold_robot(control->mcs, name, is_held, reason) : WH_STATUS_NOT_IN_PHASE;
+    if (error == WH_OK) {
+        remember(control, request, WH_OK, "OK");
+        return;
+    }
+    wh_session_write_error(text, sizeof text, error, reason);
+    remember(control, request, error, text);
+}
+
+/* True if the line is one of these, which is answered then. A prompt has a CONTINUE of its own. */
+static bool take_hold(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
+    static const char *const words[] = {"CONTINUE", "HOLD"};
+    char name[WH_LINK_LINE];
+    for (size_t i = control->script ? 0 : 1; i < 2; ++i) {
+        const bool is_plain = wh_session_says(request->line, words[i]);
+        if (is_plain || find_named(request->line, words[i], name)) {
+            hold_robot(control, request, is_plain ? NULL : name, i == 1);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A script's place cannot be kept, nor that of its flow. */
+static const char *find_unkept(const char *line) {
+    static const char *const words[] = {"SAVE", "RESTORE", "UNDO", "RESET"};
+    char name[WH_LINK_LINE];
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; ++i) {
+        if (wh_session_says(line, words[i]) || find_named(line, words[i], name)) {
+            return words[i];
+        }
+    }
+    return NULL;
+}
+
+static void turn_away_of_script(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
+    static const char expected[] = "(expected STATUS, VERSION, STOP, or HOLD and CONTINUE in a flow)";
+    const char *unkept = find_unkept(request->line);
+    if (unkept) {
+        turn_away(control, request->seq, request->line, WH_STATUS_BUSY,
+                  "%s puts back a cell and a prompt; the script %.200s runs, and where it and its flow are "
+                  "cannot be put back %s",
+                  unkept, control->script, expected);
+    } else {
+        turn_away(control, request->seq, request->line, WH_STATUS_BUSY,
+                  "another command is being executed; the script %.200s runs %s", control->script, expected);
+    }
 }
 
 static void enqueue(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
@@ -188,13 +245,12 @@ static void take_new(wh_mcs_process_t *control, const wh_mcs_process_request_t *
                             "OK version=" WH_VERSION);
     } else if (wh_session_says(line, "STOP")) {
         stop_all(control, request);
-    } else if (find_stopped(line, name)) {
+    } else if (find_named(line, "STOP", name)) {
         stop_mechanism(control, request, name);
+    } else if (take_hold(control, request)) {
+        return;
     } else if (control->script) {
-        turn_away(
-            control, request->seq, line, WH_STATUS_BUSY,
-            "another command is being executed; the script %.200s runs (expected STATUS, VERSION or STOP)",
-            control->script);
+        turn_away_of_script(control, request);
     } else if (control->owner.busy) {
         turn_away(control, request->seq, line, WH_STATUS_BUSY, "%s (expected STATUS, VERSION or STOP)",
                   control->owner.busy);

@@ -6,6 +6,7 @@
 
 #include "../text/array.h"
 #include "clocks.h"
+#include "flow_held.h"
 #include "playing.h"
 
 /* Asking costs about as much as playing a slice: fewer slices are not worth it, and where something may be
@@ -34,7 +35,7 @@ static int64_t until_segment_ends(const wh_mcs_t *mcs) {
     }
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
-        const int64_t its = lane->stop.ramp.is_on || lane->is_held ? 0
+        const int64_t its = lane->stop.ramp.is_on || lane->is_held || wh_mcs_is_held_back(mcs, lane) ? 0
                             : lane->is_busy ? until_end(mcs, &lane->track, &lane->awaited)
                                             : INT64_MAX;
         slices = its < slices ? its : slices;

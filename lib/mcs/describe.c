@@ -9,6 +9,7 @@
 #include "../math/trig.h"
 #include "../text/utf8.h"
 #include "clocks.h"
+#include "flow_held.h"
 #include "ports.h"
 
 typedef struct {
@@ -147,6 +148,25 @@ static void put_controllers(description_t *to, const wh_mcs_t *mcs) {
     for (size_t robot = 0; robot < wh_machine_robots(&mcs->layout->machine); ++robot) {
         controller_told_t told = {to, mcs->layout->robot_count > 1 ? mcs->layout->robots[robot].name : NULL};
         wh_mcs_tell_controller(mcs, robot, put_condition, &told);
+    }
+}
+
+static void put_hold(description_t *to, const wh_mcs_t *mcs, const char *robot) {
+    if (wh_mcs_is_robot_held(mcs, robot)) {
+        put(to, " ");
+        put_name(to, robot);
+        put(to, ".held=yes");
+    }
+}
+
+/* The robots of a flow that requests hold. */
+static void put_holds(description_t *to, const wh_mcs_t *mcs) {
+    const wh_layout_t *layout = mcs->layout;
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        put_hold(to, mcs, layout->robots[robot].name);
+    }
+    for (size_t robot = 0; layout->timed && robot < layout->timed->robot_count; ++robot) {
+        put_hold(to, mcs, layout->timed->robots[robot].name);
     }
 }
 
@@ -363,6 +383,7 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     if (mcs->layout) {
         put_robots(&to, mcs, seen.axes);
         put_controllers(&to, mcs);
+        put_holds(&to, mcs);
         put_grippers(&to, mcs->layout, seen.held);
         put_doors(&to, mcs);
         put_stations(&to, mcs);

@@ -8,6 +8,7 @@
 #include "../flow/failed.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "flow_held.h"
 #include "flow_own.h"
 #include "flow_plan.h"
 #include "flow_tool.h"
@@ -429,6 +430,7 @@ static int end_flow(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_flow_played_t *played = mcs->lanes->flow;
     const bool is_good = lua_isnoneornil(L, 1) && played->engine->is_over;
+    wh_mcs_release_stopped(mcs, WH_MCS_ALL);
     mcs->lanes->flow = NULL;
     for (size_t s = 0; s < played->tool->station_count; ++s) {
         wh_mcs_set_down(mcs, (int32_t)s, false);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "flow_held.h"
 #include "native.h"
 
 /* ----------------------------------------------------------------------------------------------- motions */
@@ -69,7 +70,8 @@ static void count_slices(wh_mcs_t *mcs, int64_t slices) {
     }
     for (size_t i = 0; mcs->lanes && i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
-        add_slices(&mcs->kept, lane->is_busy && !lane->is_held ? lane->kept : 0, slices);
+        const bool goes = lane->is_busy && !lane->is_held && !wh_mcs_is_held_back(mcs, lane);
+        add_slices(&mcs->kept, goes ? lane->kept : 0, slices);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "counted.h"
+#include "flow_held.h"
 #include "native.h"
 #include "playing.h"
 
@@ -28,12 +29,17 @@ static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
     }
 }
 
+/* Its segment stands still for now, or has not begun. */
+static bool stands(const wh_mcs_t *mcs, const wh_lane_t *lane) {
+    return lane->is_held || (mcs->lanes->held_axes != 0 && wh_mcs_is_held_back(mcs, lane));
+}
+
 void wh_mcs_stop_lane(wh_mcs_t *mcs, wh_lane_t *lane, wh_status_t after) {
     lane->stop.after = after;
     if (lane->stop.ramp.is_on) {
         return;
     }
-    if (lane->is_busy && !lane->is_held && wh_mcs_begin_ramp(mcs, &lane->stop.ramp, &lane->track)) {
+    if (lane->is_busy && !stands(mcs, lane) && wh_mcs_begin_ramp(mcs, &lane->stop.ramp, &lane->track)) {
         return;
     }
     lane->told = after;
@@ -60,7 +66,7 @@ static bool draw_lanes(wh_mcs_t *mcs) {
     bool is_any_over = false;
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
-        if (!lane->is_busy || lane->is_drawn || lane->is_held) {
+        if (!lane->is_busy || lane->is_drawn || stands(mcs, lane)) {
             continue;
         }
         if (lane->stop.ramp.is_on) {
@@ -87,7 +93,7 @@ static void tell_recorder(wh_mcs_t *mcs) {
         const int32_t command = (int32_t)i == mcs->lanes->current ? recorder->running : lane->running;
         if (lane->is_busy || command != WH_NONE) {
             static const wh_task_t waiting = {.share = WH_SHARE_WAITING};
-            wh_task_t task = lane->is_busy ? lane->task : waiting;
+            wh_task_t task = lane->is_busy && !wh_mcs_is_held_back(mcs, lane) ? lane->task : waiting;
             wh_activity_narrow(&task, &mcs->layout->machine, lane->axes);
             recorder->parts[recorder->part_count++] = (wh_recorder_part_t){command, task, lane->grippers};
         }
@@ -109,7 +115,7 @@ static void await_ends(const wh_mcs_t *mcs) {
 
 void wh_mcs_show_lanes(wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
-        if (mcs->lanes->of[i].is_busy && !mcs->lanes->of[i].is_held) {
+        if (mcs->lanes->of[i].is_busy && !stands(mcs, &mcs->lanes->of[i])) {
             take_axes(mcs, &mcs->lanes->of[i]);
             take_valves(mcs, &mcs->lanes->of[i]);
         }
@@ -132,6 +138,9 @@ static wh_status_t play_slice(wh_mcs_t *mcs) {
     mcs->recorder.part_count = 0;
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_vacuum_watch_slice(&mcs->lanes->of[i].watch, mcs->state.sensors);
+    }
+    if (mcs->lanes->flow && mcs->wanted.listener.flow_slice) {
+        mcs->wanted.listener.flow_slice(mcs->wanted.listener.user, mcs);
     }
     return status;
 }
@@ -175,6 +184,7 @@ static void take_end(wh_mcs_t *mcs, wh_status_t status) {
     if (wh_mcs_stop_has_come(mcs)) {
         mcs->lanes->stopped_by = wh_mcs_take_stop(mcs, &axes);
         give_up_segments(mcs, axes, WH_STATUS_STOPPED, status == WH_OK);
+        wh_mcs_release_stopped(mcs, axes);
         if (axes == WH_MCS_ALL) {
             wh_mcs_end_waits(mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
         }
@@ -355,6 +365,7 @@ static int start_segment(lua_State *L) {
     lane->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & lane->grippers & mcs->state.sensors};
     lane->is_busy = true;
     lane->is_drawn = false;
+    wh_mcs_note_held_back(mcs, lane);
     return 0;
 }
 

@@ -12,7 +12,7 @@ typedef struct wh_mcs wh_mcs_t;
 /* Room for the bytes that a partner saves. */
 #define WH_MCS_SAVED_BYTES ((size_t)1 << 17)
 
-/* The news that motion control has for its partners. Those of a HOLD are its host's, for listeners alone. */
+/* The news that motion control has for its partners. Those of a HOLD are for listeners alone. */
 typedef enum {
     WH_MCS_COMMAND_BEGINS, /* a command of the record */
     WH_MCS_COMMAND_ENDED,
@@ -21,7 +21,8 @@ typedef enum {
     WH_MCS_STATION_TOLD, /* likewise what a station does by itself */
     WH_MCS_EDGE_SCANNED, /* the scan of wh_mcs_measuring has ended */
     WH_MCS_CENTRED,      /* wh_mcs_measuring has the result of a pass through beams */
-    WH_MCS_HELD,         /* a host's HOLD: what runs stands still, and the clock with it */
+    WH_MCS_HELD,         /* a host's HOLD: what runs stands still, and the clock with it; or one of a flow's
+                          * robots: wh_mcs_name_held */
     WH_MCS_NOT_HELD,     /* no HOLD stands: it is over, or a simulator is waited for */
     WH_MCS_FINISHED /* the record is closed: the run has ended, also by an error. Not told without a cell,
                           * nor at a prompt. */
@@ -81,6 +82,8 @@ typedef struct {
     /* Like those of the partners. */
     void (*tell)(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command);
     void (*turn)(void *user, const wh_mcs_t *mcs, const char *what);
+    /* A slice of a flow with axes is over: its robots may be held now, or go on. See flow_held.h. */
+    void (*flow_slice)(void *user, wh_mcs_t *mcs);
     void *user;
 } wh_mcs_listener_t;
 

@@ -138,6 +138,7 @@ typedef struct {
     int32_t current;        /* the lane whose functions run */
     const char *stopped_by; /* why segments were given up, a constant text; null: the link refused a slice */
     struct wh_flow_played *flow; /* whose robots' commands are played in them, see flow_played.h; or null */
+    uint32_t held_axes;          /* bits: of robots that requests hold, whose segments do not begin */
     size_t count;                /* lanes from here on were never used */
     wh_lane_t of[WH_MCS_LANES];  /* the script's own first */
 } wh_lanes_t;

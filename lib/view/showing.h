@@ -37,7 +37,7 @@ typedef enum {
     WH_NEWS_STATION,        /* station */
     WH_NEWS_WAITS,          /* task waits for `text` */
     WH_NEWS_GOES_ON,        /* task waits no longer */
-    WH_NEWS_HELD,           /* good: a host's HOLD stands; else it is over */
+    WH_NEWS_HELD,           /* good: a HOLD stands, of the robots in `text` or, empty, of all that runs */
     WH_NEWS_FRAME,          /* text at port `more`; good: it came from the host */
     WH_NEWS_ENDED           /* the run is over: good, or text: why not */
 } wh_news_kind_t;

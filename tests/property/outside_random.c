@@ -1,8 +1,9 @@
 /* Real robots in random tools. If each action takes just as long as that of a timed robot, all that is
  * told is the same to the last microsecond. If actions and doors take as long as they like, no place ever
  * has two wafers, none is taken before it is done, no two blades are in one station, and each flow ends
- * done or STUCK. */
+ * done or STUCK. Requests that hold robots change nothing of that, and the time for which these stand is told. */
 #include "flow/figures.h"
+#include "flow/held.h"
 #include "flow/outside.h"
 #include "support/flow.h"
 
@@ -77,6 +78,13 @@ typedef struct {
     int64_t ends_us[2], shut_us[16];
 } player_t;
 
+/* A request that holds a robot: when the next one comes or ends; when the robot stands within its
+ * action, whose rest is to come then; and for how long it has done nothing for it. */
+typedef struct {
+    bool is_on, stands;
+    int64_t change_us, stands_us, left_us, waited_us;
+} hold_t;
+
 static void hear_nothing(void *context, wh_flow_state_t *state) {
     (void)context;
     (void)state;
@@ -128,6 +136,76 @@ static int64_t sooner(int64_t a_us, int64_t b_us) {
     return a_us < b_us ? a_us : b_us;
 }
 
+/* ---------------------------------------------------------------------------------------------- holding */
+
+/* The rest of its action comes after the request. */
+static void stand(player_t *player, hold_t *hold, int32_t robot, int64_t now_us) {
+    hold->stands = true;
+    hold->stands_us = WH_FLOW_NEVER;
+    hold->left_us = player->ends_us[robot] - now_us;
+    player->ends_us[robot] = WH_FLOW_NEVER;
+    wh_flow_tell_standing(&player->engine->state, robot);
+}
+
+/* A robot that is held ends its segment, which is a part of its action. */
+static void begin_hold(const player_t *player, hold_t *hold, int32_t robot, int64_t now_us) {
+    const int64_t ends_us = player->ends_us[robot];
+    hold->is_on = true;
+    hold->stands_us = ends_us > now_us && ends_us < WH_FLOW_FOR_EVER
+                          ? now_us + (int64_t)wh_test_below((uint32_t)(ends_us - now_us))
+                          : WH_FLOW_NEVER;
+    hold->change_us = now_us + 1 + (int64_t)wh_test_below(30000000);
+    wh_flow_tell_hold(&player->engine->state, robot, true);
+}
+
+static void end_hold(player_t *player, hold_t *hold, int32_t robot, int64_t now_us) {
+    if (hold->stands) {
+        player->ends_us[robot] = now_us + hold->left_us;
+    }
+    hold->is_on = hold->stands = false;
+    hold->stands_us = WH_FLOW_NEVER;
+    hold->change_us = now_us + 1 + (int64_t)wh_test_below(200000000);
+    wh_flow_tell_hold(&player->engine->state, robot, false);
+}
+
+/* Requests come and end at this time. */
+static void hold_robots(player_t *player, hold_t holds[2], size_t robots, int64_t now_us) {
+    for (int32_t r = 0; r < (int32_t)robots; ++r) {
+        if (holds[r].change_us == now_us && holds[r].is_on) {
+            end_hold(player, &holds[r], r, now_us);
+        } else if (holds[r].change_us == now_us) {
+            begin_hold(player, &holds[r], r, now_us);
+        }
+        if (holds[r].stands_us == now_us) {
+            stand(player, &holds[r], r, now_us);
+        }
+    }
+}
+
+/* An action that has begun while its robot is held stands at once; the flow hears of it at this instant. */
+static bool stand_at_once(player_t *player, hold_t holds[2], size_t robots, int64_t now_us) {
+    bool is_any = false;
+    for (int32_t r = 0; r < (int32_t)robots; ++r) {
+        const bool has_begun = player->ends_us[r] != WH_FLOW_NEVER;
+        const bool opens = player->engine->state.robots[r].action == WH_FLOW_OPENING;
+        if (holds[r].is_on && has_begun && !opens && holds[r].stands_us == WH_FLOW_NEVER) {
+            stand(player, &holds[r], r, now_us);
+            is_any = true;
+        }
+    }
+    return is_any;
+}
+
+static void count_waits(const player_t *player, hold_t holds[2], size_t robots, int64_t us) {
+    for (size_t r = 0; r < robots; ++r) {
+        const wh_flow_action_t action = player->engine->state.robots[r].action;
+        const bool rests = action == WH_FLOW_IDLE || action == WH_FLOW_WAITING;
+        holds[r].waited_us += holds[r].is_on && (rests || holds[r].stands) ? us : 0;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------- to the end */
+
 /* Tells all that ends at this time. */
 static void tell_ends(player_t *player, const wh_flow_tool_t *timed, int64_t now_us) {
     for (int32_t r = 0; r < (int32_t)timed->robot_count; ++r) {
@@ -144,8 +222,25 @@ static void tell_ends(player_t *player, const wh_flow_tool_t *timed, int64_t now
     }
 }
 
+/* When something ends, the engine's next instant is, or a request comes. None comes to a flow that nobody goes on with. */
+static int64_t next_of(const player_t *player, const hold_t holds[2], const wh_flow_tool_t *timed,
+                       int64_t next_us) {
+    int64_t change_us = WH_FLOW_NEVER;
+    bool is_any_on = false;
+    for (size_t i = 0; i < timed->robot_count; ++i) {
+        next_us = sooner(next_us, player->ends_us[i]);
+        next_us = sooner(next_us, holds[i].stands_us);
+        change_us = sooner(change_us, holds[i].change_us);
+        is_any_on = is_any_on || holds[i].is_on;
+    }
+    for (size_t s = 0; s < timed->station_count; ++s) {
+        next_us = sooner(next_us, player->shut_us[s]);
+    }
+    return is_any_on || next_us < WH_FLOW_FOR_EVER ? sooner(next_us, change_us) : next_us;
+}
+
 /* To the flow's end; an action of no time ends at its instant. */
-static void play(player_t *player, const wh_flow_tool_t *timed) {
+static void play(player_t *player, const wh_flow_tool_t *timed, hold_t holds[2]) {
     int64_t now_us = 0;
     for (size_t i = 0; i < 2; ++i) {
         player->ends_us[i] = WH_FLOW_NEVER;
@@ -156,15 +251,15 @@ static void play(player_t *player, const wh_flow_tool_t *timed) {
     while (!player->engine->is_over) {
         int64_t next_us = wh_flow_engine_step(player->engine, now_us);
         take_up(player, timed);
-        for (size_t i = 0; i < 2; ++i) {
-            next_us = sooner(next_us, player->ends_us[i]);
+        if (!player->engine->is_over && stand_at_once(player, holds, timed->robot_count, now_us)) {
+            continue;
         }
-        for (size_t s = 0; s < timed->station_count; ++s) {
-            next_us = sooner(next_us, player->shut_us[s]);
-        }
+        next_us = next_of(player, holds, timed, next_us);
         assert_true(player->engine->is_over || next_us < WH_FLOW_FOR_EVER);
+        count_waits(player, holds, timed->robot_count, player->engine->is_over ? 0 : next_us - now_us);
         now_us = next_us;
         tell_ends(player, timed, now_us);
+        hold_robots(player, holds, timed->robot_count, now_us);
     }
 }
 
@@ -187,6 +282,15 @@ static void make_real(wh_flow_tool_t *real, const wh_flow_tool_t *timed, bool is
 
 /* ----------------------------------------------------------------------------------------------- claims */
 
+#define NO_HOLD                                                                                              \
+    { false, false, WH_FLOW_NEVER, WH_FLOW_NEVER, 0, 0 }
+
+static hold_t draw_hold(void) {
+    hold_t hold = NO_HOLD;
+    hold.change_us = wh_test_below(2) == 0 ? (int64_t)wh_test_below(100000000) + 1 : WH_FLOW_NEVER;
+    return hold;
+}
+
 static void real_robots_do_as_timed_ones(void **unused) {
     (void)unused;
     size_t done = 0;
@@ -201,7 +305,8 @@ static void real_robots_do_as_timed_ones(void **unused) {
         const wh_flow_outside_t outside = {NULL, hear_nothing, hear_nothing, NULL, NULL, &tool, 1};
         wh_flow_measure_t *measure = wh_flow_measure_open(&tool, &flow.plan, WH_FLOW_VISITS, &outside, &real);
         player_t player = {wh_flow_measure_engine(measure), false, {0}, {0}};
-        play(&player, &flow.tool);
+        hold_t none[2] = {NO_HOLD, NO_HOLD};
+        play(&player, &flow.tool, none);
         wh_flow_measure_close(measure);
         assert_int_equal(timed.result.end, real.result.end);
         assert_int_equal(timed.result.makespan_us, real.result.makespan_us);
@@ -281,7 +386,8 @@ static void real_robots_break_nothing(void **unused) {
         const wh_flow_listener_t listener = {&seen, hear, NULL, NULL};
         wh_flow_engine_open(&engine, &tool, &flow.plan, &listener, &outside);
         player_t player = {&engine, true, {0}, {0}};
-        play(&player, &flow.tool);
+        hold_t holds[2] = {draw_hold(), draw_hold()};
+        play(&player, &flow.tool, holds);
         wh_flow_engine_result(&engine, &result);
         assert_true(result.end == WH_FLOW_DONE || result.end == WH_FLOW_STUCK);
         if (result.end == WH_FLOW_DONE) {
@@ -296,8 +402,50 @@ static void real_robots_break_nothing(void **unused) {
     assert_true(done > (size_t)rounds.made / 2);
 }
 
+/* All time of a robot is told, and so is each part of the critical path; a robot that is held waits for nothing
+ * else. */
+static void time_of_robots_that_are_held_is_told(void **unused) {
+    (void)unused;
+    int64_t waited_us = 0;
+    wh_rounds_t rounds = WH_ROUNDS(LEAST, TOOLS, 0.8);
+    while (wh_round(&rounds)) {
+        flow_case_t flow;
+        wh_flow_tool_t tool;
+        wh_flow_figures_t figures;
+        draw_flow(&flow);
+        make_real(&tool, &flow.tool, true);
+        const wh_flow_outside_t outside = {NULL, hear_nothing, hear_nothing, NULL, NULL, &tool, 1};
+        wh_flow_measure_t *measure =
+            wh_flow_measure_open(&tool, &flow.plan, WH_FLOW_VISITS, &outside, &figures);
+        player_t player = {wh_flow_measure_engine(measure), true, {0}, {0}};
+        hold_t holds[2] = {draw_hold(), draw_hold()};
+        play(&player, &flow.tool, holds);
+        wh_flow_measure_close(measure);
+        int64_t parts_us = 0;
+        for (size_t i = 0; i < figures.part_count; ++i) {
+            assert_true(figures.parts[i].us > 0);
+            parts_us += figures.parts[i].us;
+        }
+        assert_int_equal(parts_us, figures.part_count > 0 ? figures.result.makespan_us : 0);
+        for (size_t r = 0; r < tool.robot_count; ++r) {
+            int64_t all_us = 0;
+            for (size_t i = 0; i < WH_FLOW_ROBOT_CLASSES; ++i) {
+                all_us += figures.robots[r][i];
+            }
+            assert_int_equal(all_us, figures.end_us);
+            assert_int_equal(figures.robots[r][WH_FLOW_ROBOT_WAITS_DOWN], holds[r].waited_us);
+            waited_us += holds[r].waited_us;
+        }
+        wh_flow_figures_close(&figures);
+        wh_flow_tool_close(&tool);
+        flow_close(&flow);
+    }
+    assert_true(waited_us > 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(real_robots_do_as_timed_ones),
-                                       cmocka_unit_test(real_robots_break_nothing)};
+                                       cmocka_unit_test(real_robots_break_nothing),
+                                       cmocka_unit_test(time_of_robots_that_are_held_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

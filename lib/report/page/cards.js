@@ -25,7 +25,7 @@
     }
 
     /* True if a HOLD stands now; of the past the clock tells none. */
-    const isHeld = () => W.clock.following && W.live.state.held;
+    const isHeld = () => W.clock.following && W.live.state.held && !W.live.state.held_robots;
 
     function tasks(doc, t) {
         const running = doc.commands.filter((command) => command.begin_s <= t && !ended(command.end_s, t));

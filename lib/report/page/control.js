@@ -54,6 +54,17 @@
         return [control.pause, ...control.steps];
     }
 
+    /* HOLD and CONTINUE of a flow's robots. */
+    function holds(state) {
+        const select = W.element('select', { id: 'robot', 'aria-label': 'Robots of a flow' });
+        select.append(W.element('option', { value: '' }, 'all robots'));
+        (state.robots || []).forEach((robot) => select.append(W.element('option', { value: robot }, robot)));
+        const which = () => select.value || true;
+        const why = 'This robot of a flow stands after the segment that runs';
+        return [select, button('hold', 'Hold', why, () => ask({ hold: which() })),
+            button('continue', 'Continue', 'It goes on', () => ask({ continue: which() }))];
+    }
+
     const LINES = ['STATUS', 'ALARM WAFER_MISSING', 'CLEAR'];
 
     /* The lines that a reader may begin with: each fault of each gripper, and where the wafers are. */
@@ -113,7 +124,7 @@
             return;
         }
         control.said = W.element('span', { class: 'note', role: 'status', id: 'answer' });
-        const parts = state.control === 'run' ? ofRun() : ofTester(doc, state.faults || []);
+        const parts = state.control === 'run' ? ofRun().concat(holds(state)) : ofTester(doc, state.faults || []);
         control.row = W.element('div', { class: 'row', id: 'control', role: 'group', 'aria-label': 'Commands to the program' },
             ...parts, rates(), control.said);
         document.getElementById('head').append(control.row);

@@ -65,7 +65,7 @@
             return state.over ? '' : 'paused';
         }
         if (state.held) {
-            return 'held: what runs stands still by a HOLD';
+            return state.held_robots ? `held: ${state.held_robots}` : 'held: what runs stands still by a HOLD';
         }
         if (typeof state.pace !== 'number') {
             return `pace: ${asked}`;

@@ -5,6 +5,9 @@ local flows = { lots = { { wafers = { "FROM", 1, last } } }, routes = { R = { "L
 
 local function told(tool, problem)
   print("told", problem.kind, problem.robot, problem.action, problem.station, problem.slot, problem.name, tool.now)
+  if case == "recover" and problem.robot then
+    robot(problem.robot):recover()
+  end
   return params.answer
 end
 

@@ -67,6 +67,52 @@ class Control(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertIn(HASH, out)
 
+    def refused(self, served, text, **request):
+        status, answer = self.ask(served, dict(request, token=self.token))
+        self.assertEqual((status, json.loads(answer)["ok"]), (400, False), answer)
+        self.assertIn(text, json.loads(answer)["text"])
+
+    def test_robots_of_a_flow_are_held(self):
+        """Each alone, and all; the flow waits, and goes on to its end. What cannot be held is refused by name."""
+        served = self.serve("run", "tests/end_to_end/data/flow_mixed_run.lua", "--set", "wafers=2", "--json", "--page", "0", "--page-control",
+                            "--rate", "20")
+        for _ in range(500):
+            if any(each["text"].startswith("GET ") for each in served.document()["document"]["run"]["commands"]):
+                break
+            time.sleep(0.02)
+        self.assertEqual(served.document()["state"]["robots"], ["VAC", "ATM"])
+        self.tell(served, hold="VAC")
+        self.refused(served, "error 66 NOT_IN_PHASE: VAC is held already", hold="VAC")
+        self.refused(served, "error 92 NO_SUCH_ROBOT: \"PM1\" is no robot of the flow (expected ATM, VAC)", hold="\"PM1\"")
+        self.refused(served, "expected a robot's name, or true", hold=7)
+        time.sleep(0.5)
+        self.assertEqual(served.document()["state"]["held_robots"], "VAC")
+        begun, at = len(served.document()["document"]["run"]["commands"]), self.now(served)
+        while self.now(served) < at + 20:
+            time.sleep(0.05)
+        vac = [each for each in served.document()["document"]["run"]["commands"][begun:] if each["text"].split()[0] in ("GET", "PUT", "READY")]
+        self.assertEqual(vac, [])
+        self.tell(served, **{"continue": "VAC"})
+        self.tell(served, hold=True)
+        time.sleep(0.2)
+        self.assertEqual(served.document()["state"]["held_robots"], "ATM, VAC")
+        self.tell(served, pause=True)
+        self.refused(served, "the run is paused", **{"continue": True})
+        self.tell(served, pause=False)
+        self.tell(served, **{"continue": True})
+        self.refused(served, "none is held", **{"continue": True})
+        self.tell(served, rate=0)
+        served.said("its page stays until Ctrl-C", 60)
+        self.assertFalse(served.document()["state"]["held"])
+        self.refused(served, "no slice of a flow is played now", hold="VAC")
+        status, out = served.end()
+        self.assertEqual(status, 0)
+        flow = json.loads(out)["flow"]
+        down = {robot["name"]: robot["shares"]["waits_down"] * flow["counted_s"] for robot in flow["robots"]}
+        self.assertEqual(flow["end"], "done")
+        self.assertGreater(down["VAC"], 20)
+        self.assertGreater(down["ATM"], 0)
+
     def test_served_cell_plays_again(self):
         """A fault from the page, between a host's commands: the transcript has it, and plays again to the same hash."""
         transcript = page.ROOT / "build/live_page_session.txt"
@@ -139,7 +185,7 @@ class Control(unittest.TestCase):
         served.document()
         for request in ({}, {"pause": 1}, {"slices": 0}, {"slices": 1.5}, {"slices": 10**7}, {"slices": "1"}, {"rate": -1},
                         {"rate": 1e9}, {"rate": "1"}, {"rate": 1e-9}, {"line": "STATUS"}, {"nothing": 1},
-                        {"pause": True, "rate": 1}):
+                        {"pause": True, "rate": 1}, {"hold": False}, {"continue": ""}, {"hold": "VAC", "continue": "VAC"}):
             status, text = self.ask(served, dict(request, token=self.token))
             self.assertEqual((status, json.loads(text)["ok"]), (400, False), request)
         for body in (b"", b"[]", b"{", b'{"token":', b"\xff", b"[" * 3000, b'{"token":1,"token":2}'):

@@ -658,8 +658,26 @@ static void a_script_takes_no_requests_but_stop(void **state) {
     publish_request(3, "RESET");
     (void)wh_node_drain(&node, 1000);
     assert_heard(3, WH_STATUS_BUSY);
-    assert_string_equal(heard.text, "ERROR 54 BUSY: another command is being executed; the script "
-                                    "some/script.lua runs (expected STATUS, VERSION or STOP)");
+    assert_string_equal(
+        heard.text, "ERROR 54 BUSY: RESET puts back a cell and a prompt; the script some/script.lua runs, "
+                    "and where it and its flow are cannot be put back (expected STATUS, VERSION, STOP, "
+                    "or HOLD and CONTINUE in a flow)");
+    publish_request(31, "save HERE");
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(31, WH_STATUS_BUSY);
+    assert_non_null(strstr(heard.text, "SAVE puts back"));
+    publish_request(32, "SAVED");
+    (void)wh_node_drain(&node, 1000);
+    assert_string_equal(heard.text,
+                        "ERROR 54 BUSY: another command is being executed; the script some/script.lua runs "
+                        "(expected STATUS, VERSION, STOP, or HOLD and CONTINUE in a flow)");
+    publish_request(33, "HOLD VAC");
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(33, WH_STATUS_NOT_IN_PHASE);
+    publish_request(34, "continue");
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(34, WH_STATUS_NOT_IN_PHASE);
+    assert_non_null(strstr(heard.text, "no flow carries wafers now"));
     /* Between two commands: the next one does not begin to move. */
     publish_request(4, "STOP");
     (void)wh_node_drain(&node, 1000);
