@@ -38,7 +38,7 @@ local BY_ARGUMENT = { CSTP = true, MTRS = true }
 
 -- The most arguments of a command. Commands that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
-  INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
+  INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 3, MROT = 2,
   MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, MAWT = 2, MPMP = 2, MCAR = 2,
   MPRT = 2, MTKA = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CEVT = 2, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
@@ -271,7 +271,10 @@ return {
     MRDY = { does = "READY", run = transfer("READY", "") },
     MRTR = { does = "RECOVER" },
     MMAP = { does = "MAP", run = at_station("MAP"), answer = keep_map },
-    MALN = { does = "ALIGN", run = turn("ALIGN", 0), answer = keep },
+    MALN = { does = "ALIGN", run = function(request)
+      local mode = request.arguments[3] or ""
+      return turn("ALIGN", 0)(request) .. (mode ~= "" and " mode=" .. choose(mode, { R = "robot", S = "stage", P = "pins" }) or "")
+    end, answer = keep },
     MROT = { does = "ROTATE", run = turn("ROTATE") },
     MSCN = { does = "EDGE_SCAN", run = at_station("EDGE_SCAN"), answer = keep },
     MCAL = { does = "CALIBRATE", run = at_station("CALIBRATE"), answer = keep },

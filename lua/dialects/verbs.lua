@@ -26,7 +26,7 @@ end
 
 -- The most arguments of a verb. Verbs that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
-  ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
+  ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 3, TURN = 2, SCAN = 1, CALB = 1,
   TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, PUMP = 2, AWAT = 2, CARR = 2, PORT = 2, TAKE = 1,
   MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0, ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
   GVER = 0, EVNT = 2,
@@ -220,7 +220,13 @@ return {
     WMAP = { does = "MAP", run = at_station("MAP"), answer = function(request, result)
       maps[request.arguments[1] or ""] = tostring(result.values.codes)
     end },
-    ALGN = { does = "ALIGN", run = turn("ALIGN", 0), answer = keep },
+    ALGN = { does = "ALIGN", run = function(request)
+      local mode = request.arguments[3] or ""
+      if mode ~= "" and mode ~= "robot" and mode ~= "stage" and mode ~= "pins" then
+        host.refuse("BAD_ARGUMENT", mode)
+      end
+      return turn("ALIGN", 0)(request) .. (mode ~= "" and " mode=" .. mode or "")
+    end, answer = keep },
     TURN = { does = "ROTATE", run = turn("ROTATE") },
     SCAN = { does = "EDGE_SCAN", run = at_station("EDGE_SCAN"), answer = keep },
     CALB = { does = "CALIBRATE", run = at_station("CALIBRATE"), answer = keep },

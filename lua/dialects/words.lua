@@ -101,6 +101,9 @@ local function with_angle(word, by_itself)
   end
 end
 
+-- How an aligner makes good what it finds.
+local MODES = { ROBOT = "robot", STAGE = "stage", PINS = "pins" }
+
 -- A command with a door alone.
 local function with_door(word)
   return function(request)
@@ -216,7 +219,7 @@ end
 
 -- The most words behind a command's own words; for other commands their options tell.
 local MOST = {
-  HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
+  HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 3, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
   OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, AWAIT = 2, PUMP = 2, CARRIER = 2, PORT = 2, REMOVE = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
   ["SET BKG"] = 1, ["SET POWER"] = 1, ["SET BRAKES"] = 1, ["SET ESTOP"] = 1, ["SET SERVO"] = 1, ["SET MODE"] = 1, ["SET SPEED"] = 1,
   ["RQ CTRL"] = 0, ["RQ MAP"] = 1, ["RQ PORT"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
@@ -266,7 +269,13 @@ return {
     MAP = { does = "MAP", run = with_station("MAP"), answer = map },
     TEACH = { does = "TEACH", run = teach, answer = keep },
     RETRACT = { does = "RECOVER" },
-    ALIGN = { does = "ALIGN", run = with_angle("ALIGN", 0), answer = keep },
+    ALIGN = { does = "ALIGN", run = function(request)
+      local mode = request.words[4]
+      if mode and not MODES[mode] then
+        host.refuse("BAD_ARGUMENT", mode)
+      end
+      return with_angle("ALIGN", 0)(request) .. (mode and " mode=" .. MODES[mode] or "")
+    end, answer = keep },
     ROTATE = { does = "ROTATE", run = with_angle("ROTATE") },
     SCAN = { does = "EDGE_SCAN", run = with_station("EDGE_SCAN"), answer = keep },
     CALIB = { does = "CALIBRATE", run = with_station("CALIBRATE"), answer = keep },
