@@ -165,6 +165,9 @@ return function(native, commands, answers, lookup, tokens, states, background, o
     return ("%s: %s"):format(prompt_commands.usage(name, true), prompt_commands.commands[name].does)
   end
 
+  -- Faults of a robot's own controller: with several robots, of the one that is named or whose port this is.
+  local OF_ROBOTS = { power_lost = true, emergency_stop = true, servo_error = true }
+
   -- The names of turns in a line, and the fault's options.
   local TURNS = { "rx", "ry", "rz" }
   local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer", door = "door", station = "station", step = "e84_step" }
@@ -186,6 +189,9 @@ return function(native, commands, answers, lookup, tokens, states, background, o
     end
     for name, value in pairs(options) do
       description[name] = value
+    end
+    if OF_ROBOTS[description.kind] and lookup.has_several() and lookup.bound() then
+      description.robot = native.layout.robots[lookup.bound()].name
     end
     return tokens.pairs { { "fault", commands.fault(description) } }
   end
