@@ -7,7 +7,7 @@
 #   WITHOUT="sweep index"   the library has no swept checking, no index over the wafers, or neither
 #   SHARED=1   the shared libraries are installed, too
 #   COLLISION=1  install-library installs collision, too; it needs libccd
-#   FOR="run test"  whose packages `make deps` installs: run, page, test, check, bench, verify, manual, spy, view, browser, playground
+#   FOR="run test"  whose packages `make deps` installs: run, page, test, check, bench, verify, manual, spy, browser, playground
 #   CCACHE=    does not use ccache, which is otherwise used if it is there
 #   WERROR=1   warnings are errors (always so if CI is set)
 #   V=1        shows the commands; 0 switches off what 1 switches on, and is the default
@@ -39,7 +39,7 @@ include lib/build/switches.mk tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz configurations
 PART := $(CORE_PARTS) board played same_bits builds playground analysers wp random long hour long_counts coverage mutation host_mutation
 
-.PHONY: all deps library shared manual manual-tables install-library run spy playground view test quick bench check verify-core verify install uninstall clean help
+.PHONY: all deps library shared manual manual-tables install-library run spy playground test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -68,11 +68,6 @@ playground: ## build/playground.html: Waferhand in one page, without a server; a
 	$(NEED) run playground
 	$(BUILD) playground
 	@echo 'build/playground.html'
-
-view: all ## shows a cell live in a web browser: fetches Drake's viewer, says what to start beside it
-	$(NEED) run view
-	@lib/view/fetch
-	@lib/view/start
 
 test: ## every test: plain, under sanitizers, in float, and end to end; installs what is missing for it
 	$(DEPS) run test $(if $(CI),browser)

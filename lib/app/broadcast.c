@@ -217,21 +217,3 @@ bool wh_broadcast_close(wh_broadcast_t *broadcast) {
     wh_node_close(&broadcast->node);
     return wh_recording_close(&broadcast->record);
 }
-
-/* ---------------------------------------------------------------------------------------------- the view */
-
-bool wh_app_open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout) {
-    static const char *const left_out[WH_VIEW_DETAILS] = {
-        [WH_VIEW_ALL] = "",
-        [WH_VIEW_NO_LEDGES] = "; its ledges are left out",
-        [WH_VIEW_BOXES] = "; its ledges are left out, its meshes are boxes",
-    };
-    if (wh_viewer_open(view, node, layout) != WH_OK) {
-        fprintf(stderr, "%s: --view: too many parts (expected a cell that fits %d bytes)\n", layout->path,
-                WH_VIEW_BYTES);
-        return false;
-    }
-    wh_node_say(node, "shown to viewers: %d bodies in %d bytes%s", view->cell.bodies.load.num_links,
-                view->cell_bytes.load_size, left_out[view->cell.detail]);
-    return true;
-}

@@ -5,10 +5,9 @@
 
 #include "../link/sim_process.h"
 #include "../log/recording.h"
-#include "../view/view.h"
 #include "connection.h"
 
-/* Must not be moved once opened. To be read: node, record, simulation and `layouts`. */
+/* Must not be moved once opened. To be read: node, record and simulation. */
 typedef struct {
     wh_link_t link; /* first */
     wh_node_t node;
@@ -39,9 +38,5 @@ void wh_broadcast_tick(wh_broadcast_t *broadcast);
 /* Tells that the run is over. A script's run may be gone by now, a session not yet. False if the recording
  * failed, which standard error has said. */
 bool wh_broadcast_close(wh_broadcast_t *broadcast);
-
-/* Opens a view of the layout, and tells the node what it shows. False, with a line on standard error and
- * nothing to close, if the cell is too large. */
-bool wh_app_open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout);
 
 #endif

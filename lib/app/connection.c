@@ -22,7 +22,7 @@ const wh_option_t wh_record_options[] = {
      "Record slices into an LCM event log: what `replay` and `report` need; compressed if the name ends in "
      ".zst",
      WH_OPTION_TEXT, .variable = offsetof(wh_record_arguments_t, slices)},
-    {"record-all", 0, "FILE", "Record every message instead, as lcm-spy and viewers want it", WH_OPTION_TEXT,
+    {"record-all", 0, "FILE", "Record every message instead, as lcm-spy wants it", WH_OPTION_TEXT,
      .variable = offsetof(wh_record_arguments_t, all)},
     {"record-size", 0, "MB", "Go on in a new file (run.part2.log) when one is so large", WH_OPTION_REAL,
      .variable = offsetof(wh_record_arguments_t, part_mb), 0.01, 1e6},

@@ -470,13 +470,12 @@ static bool open_session(served_t *served, const arguments_t *arguments) {
         fprintf(stderr, "%s\n", served->session.message);
         return false;
     }
-    return wh_serve_cell_open_view(&served->cell);
+    return true;
 }
 
 static bool close_served(served_t *served) {
     wh_live_close(served->live);
     wh_host_close(&served->host);
-    wh_serve_cell_close_view(&served->cell);
     wh_signals_close(&served->signals);
     const bool is_sound = wh_serve_cell_close(&served->cell);
     wh_session_close(&served->session);

@@ -1,7 +1,5 @@
 #include "serve_cell.h"
 
-#include <string.h>
-
 #include "../text/clock.h"
 
 const wh_option_t wh_serve_cell_options[] = {
@@ -13,60 +11,39 @@ const wh_option_t wh_serve_cell_options[] = {
      WH_OPTION_REAL, .variable = offsetof(wh_serve_cell_arguments_t, timeout_s), 1e-3, 1e6},
     {"lcm", 0, NULL, "Publish over LCM what motion control and simulator would say to each other",
      WH_OPTION_FLAG, .variable = offsetof(wh_serve_cell_arguments_t, lcm)},
-    {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
-     .variable = offsetof(wh_serve_cell_arguments_t, view)},
-    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --sim, --lcm or --view",
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --sim or --lcm",
      WH_OPTION_TEXT, .variable = offsetof(wh_serve_cell_arguments_t, url)},
     {0}};
 
-static bool is_live(const wh_serve_cell_arguments_t *arguments) {
-    return arguments->lcm || arguments->view;
-}
-
 void wh_serve_cell_check(const void *given, struct argp_state *state) {
     const wh_serve_cell_arguments_t *arguments = given;
-    if (arguments->sim && is_live(arguments)) {
-        argp_error(state, "--%s: with --sim the simulator says it itself (expected `waferhand sim LAYOUT%s`)",
-                   arguments->lcm ? "lcm" : "view", arguments->lcm ? "" : " --view");
+    if (arguments->sim && arguments->lcm) {
+        argp_error(state, "--lcm: with --sim the simulator says it itself (expected `waferhand sim LAYOUT`)");
     }
     if (arguments->timeout_s > 0 && !arguments->sim) {
         argp_error(state, "--timeout: %g (goes with --sim)", arguments->timeout_s);
     }
-    if (arguments->url && !arguments->sim && !is_live(arguments)) {
-        argp_error(state, "--lcm-url: %s (goes with --sim, --lcm or --view)", arguments->url);
+    if (arguments->url && !arguments->sim && !arguments->lcm) {
+        argp_error(state, "--lcm-url: %s (goes with --sim or --lcm)", arguments->url);
     }
 }
 
 static bool is_published(const wh_serve_cell_arguments_t *arguments) {
-    return is_live(arguments) || arguments->record.slices || arguments->record.all;
+    return arguments->lcm || arguments->record.slices || arguments->record.all;
 }
 
 /* ------------------------------------------------------------------------------ simulated in this process */
 
-static bool open_view(wh_serve_cell_t *cell) {
-    cell->view.command = cell->broadcast.simulation->command;
-    cell->shown = cell->broadcast.layouts;
-    return wh_app_open_view(&cell->view, &cell->broadcast.node, wh_session_layout(cell->host->session));
-}
-
-/* Called at least every 100 ms. A RESET has read the layout anew. */
+/* Called at least every 100 ms. */
 static void tick_broadcast(void *user) {
     wh_serve_cell_t *cell = user;
     wh_broadcast_tick(&cell->broadcast);
-    if (cell->view.node && cell->shown != cell->broadcast.layouts) {
-        wh_viewer_close(&cell->view);
-        memset(&cell->view, 0, sizeof cell->view);
-        (void)open_view(cell);
-    }
-    if (cell->view.node) {
-        wh_viewer_tick(&cell->view, &cell->broadcast.simulation->server);
-    }
 }
 
 static bool open_broadcast(wh_serve_cell_t *cell, wh_mcs_partners_t *partners) {
     const wh_serve_cell_arguments_t *arguments = cell->arguments;
     cell->is_broadcast =
-        wh_broadcast_open(&cell->broadcast, "serve", &arguments->record, is_live(arguments), arguments->url);
+        wh_broadcast_open(&cell->broadcast, "serve", &arguments->record, arguments->lcm, arguments->url);
     if (!cell->is_broadcast) {
         return false;
     }
@@ -148,14 +125,6 @@ bool wh_serve_cell_open(wh_serve_cell_t *cell, const wh_serve_cell_arguments_t *
         return open_link(cell, partners);
     }
     return !is_published(arguments) || open_broadcast(cell, partners);
-}
-
-bool wh_serve_cell_open_view(wh_serve_cell_t *cell) {
-    return !cell->arguments->view || open_view(cell);
-}
-
-void wh_serve_cell_close_view(wh_serve_cell_t *cell) {
-    wh_viewer_close(&cell->view);
 }
 
 bool wh_serve_cell_close(wh_serve_cell_t *cell) {

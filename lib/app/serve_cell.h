@@ -11,7 +11,7 @@ typedef struct {
     wh_record_arguments_t record;
     const char *url;  /* null: the default */
     double timeout_s; /* how long to wait for the other simulator; 0: for ever */
-    bool lcm, view;
+    bool lcm;
     bool sim; /* the simulator is another process */
 } wh_serve_cell_arguments_t;
 
@@ -26,9 +26,7 @@ typedef struct {
     wh_broadcast_t broadcast;
     wh_mcs_link_t link;
     bool is_broadcast, is_linked;      /* the broadcast is open, or the link */
-    wh_viewer_t view;                  /* without a node it is closed */
     int64_t stopped_us, stopped_slice; /* since when a STOP waits for the answer to a slice, and to which */
-    uint64_t shown;                    /* the broadcast's layout that the view shows */
 } wh_serve_cell_t;
 
 /* Opens what the arguments ask for; `partners` are for the session of `host`, whose tick it takes. False,
@@ -36,12 +34,7 @@ typedef struct {
 bool wh_serve_cell_open(wh_serve_cell_t *cell, const wh_serve_cell_arguments_t *arguments, wh_host_t *host,
                         wh_mcs_partners_t *partners);
 
-/* Opens the view, if one is asked for, once the session has the layout. */
-bool wh_serve_cell_open_view(wh_serve_cell_t *cell);
-
-/* Call both before the session is closed. The last is false if the recording failed, which standard error has
- * said. */
-void wh_serve_cell_close_view(wh_serve_cell_t *cell);
+/* Call it before the session is closed. False if the recording failed, which standard error has said. */
 bool wh_serve_cell_close(wh_serve_cell_t *cell);
 
 #endif

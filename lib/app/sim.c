@@ -11,7 +11,6 @@
 #include "../log/recording.h"
 #include "../text/json.h"
 #include "../text/style.h"
-#include "../view/view.h"
 #include "apart.h"
 #include "app.h"
 #include "broadcast.h"
@@ -24,19 +23,17 @@ typedef struct {
     wh_layout_arguments_t layout;
     wh_record_arguments_t record;
     const char *url, *outputs;
-    bool view, json, log_time, one_sender;
+    bool json, log_time, one_sender;
     wh_live_arguments_t page;
     wh_sim_board_arguments_t board;
 } arguments_t;
 
 static const wh_option_t options[] = {
     {"lcm-url", 0, "URL",
-     "Where LCM is (default " WH_NODE_URL "; with a board: nowhere, unless --view is given)", WH_OPTION_TEXT,
+     "Where LCM is (default " WH_NODE_URL "; with a board: nowhere)", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
     {"outputs", 0, "FILE", "Take the valves from this file, one value per gripper, 0 or 1", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, outputs)},
-    {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, view)},
     {"one-sender", 0, NULL,
      "Take commands from the process alone that began the run, until it is over or has been silent for 10 s",
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, one_sender)},
@@ -166,7 +163,6 @@ static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) 
 typedef struct {
     wh_sim_process_t simulation;
     wh_outputs_t outputs;
-    wh_viewer_t view;
     wh_live_sim_t live;
 } served_t;
 
@@ -184,7 +180,6 @@ static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *la
         return false;
     }
     return open_outputs(&served->outputs, arguments->outputs, layout->machine.gripper_count) &&
-           (!arguments->view || wh_app_open_view(&served->view, node, layout)) &&
            wh_live_sim_open(&served->live, &arguments->page, &served->simulation);
 }
 
@@ -192,7 +187,6 @@ static void close_served(served_t *served) {
     if (served->outputs.count > 0) {
         wh_outputs_close(&served->outputs);
     }
-    wh_viewer_close(&served->view);
     wh_live_sim_close(&served->live);
     wh_sim_process_close(&served->simulation);
 }
@@ -201,9 +195,6 @@ static void close_served(served_t *served) {
 static void tick(void *user) {
     served_t *served = user;
     wh_live_sim_tick(&served->live);
-    if (served->view.node) {
-        wh_viewer_tick(&served->view, &served->simulation.server);
-    }
 }
 
 /* Commands come over LCM. */
@@ -236,7 +227,6 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
     const wh_sim_board_ticks_t ticks = {tick_board, &served};
     int status = WH_EXIT_USAGE;
     if (open_served(&served, node, layout, arguments)) {
-        served.view.command = served.simulation.command;
         served.simulation.one_sender = arguments->one_sender;
         status = wh_sim_board_is_wanted(&arguments->board)
                      ? wh_sim_board_serve(&arguments->board, &served.simulation, &ticks, arguments->json)
@@ -267,7 +257,7 @@ static int run(arguments_t *arguments) {
     }
     wh_catch_signals();
     wh_record_arguments_apply(&arguments->record, "sim", false, &record);
-    const bool is_alone = wh_sim_board_is_wanted(&arguments->board) && !arguments->url && !arguments->view;
+    const bool is_alone = wh_sim_board_is_wanted(&arguments->board) && !arguments->url;
     const char *url = is_alone ? "memq://" : arguments->url;
     if ((!is_alone && !wh_node_reaches_others(url)) || !wh_recording_open_node(&record, &node, url)) {
         return WH_EXIT_USAGE;

@@ -1,6 +1,5 @@
-/* The colours of a cell's parts, in one table: of drawings (`layout --svg`), of glTF, of the report's page
- * and of Drake's viewer. The page's style sheet, lib/report/page/page.css, has them again under names of its
- * own; a test compares. */
+/* The colours of a cell's parts in drawings (`layout --svg`) and in glTF. The report's page has paler ones, in
+ * its style sheet. */
 #ifndef WH_LAYOUT_INKS_H
 #define WH_LAYOUT_INKS_H
 
@@ -23,13 +22,10 @@ typedef struct {
     uint32_t light, dark;
 } wh_colour_t;
 
-/* Drawings and glTF tell parts apart by stronger colours than the page and the viewer. There grippers have
- * those of wh_ink_series, so that they and what they hold stand out. */
 typedef struct {
     const char *class, *name; /* in a drawing, and in its key */
     wh_colour_t drawn;
     const char *opacity; /* in a drawing */
-    wh_colour_t shown;   /* on the page; the light one in the viewer */
 } wh_ink_look_t;
 
 extern const wh_ink_look_t wh_ink_looks[WH_INKS];
@@ -42,13 +38,6 @@ typedef struct {
 } wh_ink_material_t;
 
 extern const wh_ink_material_t wh_ink_materials[WH_INKS];
-
-/* The colours of grippers on the page and in the viewer, used again and again in this order. */
-#define WH_INK_SERIES 6
-extern const wh_colour_t wh_ink_series[WH_INK_SERIES];
-
-/* The colours of edges and notches, and of the background, on the page and in the viewer. */
-extern const wh_colour_t wh_ink_edge, wh_ink_stage;
 
 wh_part_ink_t wh_ink_of(const wh_part_t *part);
 

@@ -156,48 +156,6 @@ static void on_restore(void *user, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* Forgets the task's command, which has ended or begins again; when the run is over it forgets all. */
-static void forget_commands(wh_sim_process_t *simulation, const waferhand_mcs *message) {
-    size_t kept = 0;
-    for (size_t i = 0; i < simulation->command_count; ++i) {
-        if (message->phase != WH_LINK_PHASE_OVER && simulation->commands[i].task != message->task) {
-            simulation->commands[kept++] = simulation->commands[i];
-        }
-    }
-    simulation->command_count = kept;
-}
-
-static bool command_runs(const waferhand_mcs *message) {
-    return message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
-}
-
-/* The first command of a run begins before the run has a number. An answer, such as that of STATUS, ends no
- * command. */
-static bool is_of_commands(const wh_sim_process_t *simulation, const waferhand_mcs *message) {
-    const bool is_ours = message->run == 0 || message->run == simulation->server.identity.run;
-    const bool rests = message->phase == WH_LINK_PHASE_IDLE || message->phase == WH_LINK_PHASE_OVER;
-    const bool ends = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
-    return is_ours && (command_runs(message) || rests || (ends && message->request == 0));
-}
-
-static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
-    if (!is_of_commands(simulation, message)) {
-        return;
-    }
-    forget_commands(simulation, message);
-    if (command_runs(message) && simulation->command_count < WH_SIMULATION_COMMANDS) {
-        wh_sim_process_command_t *command = &simulation->commands[simulation->command_count++];
-        command->task = message->task;
-        wh_utf8_clip(command->line, sizeof command->line, message->command);
-    }
-    simulation->command[0] = '\0';
-    size_t length = 0;
-    for (size_t i = 0; i < simulation->command_count && length < sizeof simulation->command; ++i) {
-        length += (size_t)snprintf(simulation->command + length, sizeof simulation->command - length, "%s%s",
-                                   i > 0 ? "; " : "", simulation->commands[i].line);
-    }
-}
-
 static void on_mcs(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_mcs message;
@@ -206,7 +164,6 @@ static void on_mcs(void *user, const void *data, size_t size) {
         return;
     }
     const bool is_ours = message.run == simulation->server.identity.run;
-    note_command(simulation, &message);
     if (simulation->heard && (is_ours || message.run == 0)) {
         simulation->heard(simulation->heard_user, &message);
     }

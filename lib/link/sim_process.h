@@ -25,14 +25,6 @@ typedef struct {
  * been silent for this time. */
 #define WH_SIMULATION_BOUND_US 10000000
 
-/* A script has one command at a time, and each of its tasks has one, too. */
-#define WH_SIMULATION_COMMANDS 65
-
-typedef struct {
-    int32_t task; /* the command's task */
-    char line[WH_LINK_LINE];
-} wh_sim_process_command_t;
-
 typedef struct {
     wh_node_t *node;
     wh_protocol_server_t server;
@@ -45,12 +37,9 @@ typedef struct {
     int64_t other_run;    /* the last run that was turned away for its layout */
     bool running;         /* a run has begun and is not over */
     bool silent;          /* motion control has fallen silent in it */
-    wh_sim_process_command_t commands[WH_SIMULATION_COMMANDS]; /* those that run, by motion control */
-    size_t command_count;
     /* Called with what motion control says of the present run; may be null. */
     void (*heard)(void *user, const waferhand_mcs *message);
     void *heard_user;
-    char command[WH_LINK_LINE]; /* the commands' lines, cut to this length; empty: none */
     wh_sim_process_counters_t counters;
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_sim_process_t;

@@ -5,7 +5,7 @@
 C_FILES := $(shell find lib tests -name '*.[ch]')
 CXX_FILES := $(shell find lib -name '*.[ch]pp')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.[ch]pp' -o -name '*.java')
-SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
+SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/spy/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
 check: check-format check-words check-lengths check-natives check-shell check-lua check-scripts check-manual check-site check-rooms check-libm check-paths check-proofs check-builds check-deviations
 

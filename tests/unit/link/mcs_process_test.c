@@ -56,15 +56,11 @@ static void publish_request(int64_t seq, const char *line) {
     publish(message, line);
 }
 
-/* The simulator's running command in the slice before the last. */
-static char running[WH_LINK_LINE];
-
 /* Motion control's own link, and the requests before the slice in which they are due. */
 static wh_link_t asking;
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     (void)link;
-    snprintf(running, sizeof running, "%s", simulation.command);
     assert_in_range(command->seq, 1, 9999);
     memcpy(sent[command->seq], command->axes, sizeof sent[0]);
     for (size_t i = 0; command->seq >= plan.at && i < plan.count; ++i) {
@@ -178,16 +174,30 @@ static void assert_heard(int64_t seq, wh_status_t error) {
     assert_int_equal(heard.error[seq], error);
 }
 
-static void the_simulator_knows_the_running_command(void **state) {
+/* The commands of which the simulator hears that they begin, and the last one's line. */
+static int begun;
+static char line_begun[WH_LINK_LINE];
+
+static void hear_begins(void *user, const waferhand_mcs *message) {
+    (void)user;
+    if (message->phase == WH_LINK_PHASE_BEGINS) {
+        ++begun;
+        snprintf(line_begun, sizeof line_begun, "%s", message->command);
+    }
+}
+
+static void the_simulator_hears_of_commands_that_begin(void **state) {
     (void)state;
-    assert_string_equal(simulation.command, "");
+    begun = 0;
+    simulation.heard = hear_begins;
     assert_int_equal(execute("GET A 1"), WH_OK);
-    assert_string_equal(running, "GET A 1"); /* though it began before the run had a number */
     (void)wh_node_drain(&node, 1000);
-    assert_string_equal(simulation.command, "");
+    assert_int_equal(begun, 1); /* though it began before the run had a number */
+    assert_string_equal(line_begun, "GET A 1");
     assert_int_equal(execute("PUT B 2"), WH_OK);
-    assert_string_equal(running, "PUT B 2");
     (void)wh_node_drain(&node, 1000);
+    assert_int_equal(begun, 2);
+    assert_string_equal(line_begun, "PUT B 2");
 
     uint8_t encoded[200];
     char line[] = "GET Z 1", nothing[] = "";
@@ -196,7 +206,7 @@ static void the_simulator_knows_the_running_command(void **state) {
     const int size = waferhand_mcs_encode(encoded, 0, (int)sizeof encoded, &other);
     assert_true(wh_node_publish(&node, WH_CHANNEL_MCS, encoded, (size_t)size));
     (void)wh_node_drain(&node, 1000);
-    assert_string_equal(simulation.command, ""); /* another motion control's */
+    assert_int_equal(begun, 2); /* another motion control's */
 }
 
 static void requests_wait_for_their_turn(void **state) {
@@ -634,17 +644,6 @@ static void the_proximity_values_of_the_last_slice_are_told_at_rest(void **state
     }
 }
 
-static void an_answer_does_not_end_the_command_that_the_simulator_shows(void **state) {
-    (void)state;
-    plan.at = 500;
-    plan.count = 1;
-    plan.lines[0] = "STATUS";
-    assert_int_equal(execute("GET A 1"), WH_OK);
-    assert_heard(1, WH_OK);
-    assert_string_equal(running, "GET A 1");
-}
-
-/* The command that runs here is the session's; control takes it for a script's. */
 static void a_script_takes_no_requests_but_stop(void **state) {
     (void)state;
     control.script = "some/script.lua";
@@ -794,7 +793,7 @@ static void a_simulator_that_was_given_its_state_back_does_not_call_motion_contr
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_PAPER(the_simulator_knows_the_running_command),
+        IN_PAPER(the_simulator_hears_of_commands_that_begin),
         IN_PAPER(requests_wait_for_their_turn),
         IN_PAPER(a_number_that_comes_again_is_answered_again_and_not_executed),
         IN_PAPER(a_number_with_another_line_is_refused_and_the_first_line_named),
@@ -814,7 +813,6 @@ int main(void) {
         IN_PAPER(a_datagram_that_is_no_request_is_answered_if_it_has_a_number),
         IN_PAPER(another_motion_control_is_noticed_and_one_before_is_not),
         IN_PAPER(the_proximity_values_of_the_last_slice_are_told_at_rest),
-        IN_PAPER(an_answer_does_not_end_the_command_that_the_simulator_shows),
         IN_PAPER(requests_that_wait_are_stopped_with_those_that_have_come),
         IN_PAPER(status_and_version_are_answered_while_a_command_runs),
         IN_PAPER(status_is_answered_anew_each_time),
