@@ -4,6 +4,7 @@
 static bool kind_of(int32_t phase, wh_news_kind_t *kind) {
     switch (phase) {
     case WH_LINK_PHASE_BEGINS:
+    case WH_LINK_PHASE_GOES_ON:
         *kind = WH_NEWS_COMMAND_BEGINS;
         return true;
     case WH_LINK_PHASE_DONE:
@@ -25,11 +26,41 @@ static bool kind_of(int32_t phase, wh_news_kind_t *kind) {
     }
 }
 
-/* An answer, such as that of STATUS, ends no command. */
+/* Forgets the task's command, which has ended or begins; at the run's end all. True if one was known. */
+static bool forget(wh_live_sim_t *sim, const waferhand_mcs *message) {
+    size_t kept = 0;
+    const size_t count = sim->begun_count;
+    for (size_t i = 0; i < count; ++i) {
+        if (message->phase != WH_LINK_PHASE_OVER && sim->begun[i] != message->task) {
+            sim->begun[kept++] = sim->begun[i];
+        }
+    }
+    sim->begun_count = kept;
+    return kept < count;
+}
+
+/* True if the message is news. The first command of a run begins before the simulator knows the run: so it is
+ * told by the message that it goes on. An answer, such as that of STATUS, ends no command. */
+static bool is_news(wh_live_sim_t *sim, const waferhand_mcs *message) {
+    const bool begins = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
+    const bool ends = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
+    if (ends && message->request != 0) {
+        return false;
+    }
+    if (!begins && !ends && message->phase != WH_LINK_PHASE_OVER) {
+        return true;
+    }
+    const bool was_known = forget(sim, message);
+    if (begins && sim->begun_count < WH_LIVE_SIM_TASKS) {
+        sim->begun[sim->begun_count++] = message->task;
+    }
+    return message->phase != WH_LINK_PHASE_GOES_ON || !was_known;
+}
+
 static void hear(void *user, const waferhand_mcs *message) {
-    const wh_live_sim_t *sim = user;
+    wh_live_sim_t *sim = user;
     wh_news_kind_t kind;
-    if (!kind_of(message->phase, &kind) || (kind == WH_NEWS_COMMAND_ENDED && message->request != 0)) {
+    if (!is_news(sim, message) || !kind_of(message->phase, &kind)) {
         return;
     }
     const bool is_command = kind == WH_NEWS_COMMAND_BEGINS || kind == WH_NEWS_COMMAND_ENDED;

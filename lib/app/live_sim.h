@@ -5,13 +5,18 @@
 #include "../link/sim_process.h"
 #include "live.h"
 
+/* The most tasks whose commands are told to begin: those of a script, and the script itself. */
+#define WH_LIVE_SIM_TASKS 65
+
 /* Zero it to begin with; it must not be moved once opened. */
 typedef struct {
     wh_live_t *live; /* null: no page is wanted */
     const wh_sim_process_t *simulation;
     wh_mcs_listener_t listener;
-    wh_command_t command; /* the axes of the last slice */
-    int64_t run, seq;     /* of the last slice that was handed on */
+    wh_command_t command;             /* the axes of the last slice */
+    int64_t run, seq;                 /* of the last slice that was handed on */
+    int32_t begun[WH_LIVE_SIM_TASKS]; /* tasks whose command has been told to begin */
+    size_t begun_count;
 } wh_live_sim_t;
 
 /* Opens the page, if one is wanted; the simulation must be open and outlive it. False, with a message: it

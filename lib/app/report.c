@@ -31,6 +31,7 @@ static const wh_option_table_t tables[] = {
     {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_run_again_options, offsetof(arguments_t, run), NULL, wh_run_again_check},
     {0}};
 
 static void check_report_arguments(const void *given, struct argp_state *state) {
@@ -41,6 +42,9 @@ static void check_report_arguments(const void *given, struct argp_state *state) 
     const char *table = wh_run_table_wanted(&arguments->run);
     if (table) {
         argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)", table);
+    }
+    if (arguments->watch && arguments->run.plays_again) {
+        argp_error(state, "--watch does not go with --live: both listen for what is read");
     }
     if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.segments_path &&
         !arguments->run.json) {
@@ -96,6 +100,7 @@ static const char *find_foreign(const wh_run_arguments_t *run) {
            : run->run.limits.trust ? "--trust"
            : run->errors.count > 0 ? "--error"
            : run->counting.counted ? "--counted"
+           : run->plays_again      ? "--live"
                                    : NULL;
 }
 

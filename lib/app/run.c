@@ -129,6 +129,9 @@ static void check_run_arguments(const void *given, struct argp_state *state) {
     check_counted(arguments, state);
     check_brief(arguments, state);
     check_page(arguments, state);
+    if (arguments->watch && arguments->run.plays_again) {
+        argp_error(state, "--watch does not go with --live: both listen for what is read");
+    }
     if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
         argp_error(state, "--watch goes neither with --lcm nor with a recording");
     }
@@ -141,6 +144,7 @@ static const wh_option_table_t tables[] = {
     {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_run_again_options, offsetof(arguments_t, run), NULL, wh_run_again_check},
     {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {0}};
 

@@ -127,6 +127,36 @@ void wh_run_errors_check(const void *filled, struct argp_state *state) {
     }
 }
 
+/* --------------------------------------------------------------------------------------- playing it again */
+
+const wh_option_t wh_run_again_options[] = {
+    {"live", 0, NULL,
+     "With --report: the page plays the run again with other values of its params, by the engine that `make "
+     "playground` builds, and carries all that it takes",
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, plays_again)},
+    {0}};
+
+/* The first option that a page's engine does not have; null: none is given. */
+static const char *find_native(const wh_run_arguments_t *arguments) {
+    return arguments->run.limits.trust   ? "--trust"
+           : arguments->memory_mib > 0   ? "--memory"
+           : arguments->counting.counted ? "--counted"
+           : arguments->run.until_steady ? "--until-steady"
+           : arguments->errors.count > 0 ? "--error"
+                                         : NULL;
+}
+
+void wh_run_again_check(const void *filled, struct argp_state *state) {
+    const wh_run_arguments_t *arguments = filled;
+    const char *native = find_native(arguments);
+    if (arguments->plays_again && !arguments->files.page) {
+        argp_error(state, "--live: in which page? (goes with --report FILE)");
+    }
+    if (arguments->plays_again && native) {
+        argp_error(state, "--live does not go with %s, which a page does not have", native);
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------- counting */
 
 const wh_option_t wh_run_counting_options[] = {
@@ -195,6 +225,8 @@ bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t
         return true;
     }
     wh_run_written_open(&whole, document, &arguments->run, is_log ? "replay" : wh_run_subcommand(arguments));
+    whole.cell = arguments->reel.cell;
+    whole.engine = arguments->reel.engine;
     const bool written = wh_file_write("--data", files->document, wh_run_written_document, &whole, NULL) &&
                          wh_file_write("--gltf", files->scene, wh_run_written_scene, &whole, NULL) &&
                          wh_file_write("--report", files->page, wh_run_written_page, &whole, whole.message) &&
@@ -368,10 +400,36 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments) {
     wh_option_list_free(&arguments->errors);
 }
 
+/* Takes along what its page needs to play the run again, if that is wanted. */
+static bool open_reel(wh_run_arguments_t *arguments) {
+    char message[WH_PAGE_MESSAGE_BYTES];
+    if (!arguments->plays_again) {
+        return true;
+    }
+    if (!wh_reel_open(&arguments->reel, message)) {
+        fprintf(stderr, "--live: %s\n", message);
+        return false;
+    }
+    wh_reel_hear(&arguments->reel);
+    return true;
+}
+
+static bool may_begin(wh_run_arguments_t *arguments) {
+    return wh_run_files_are_apart(arguments, NULL) && open_reel(arguments);
+}
+
+static wh_script_run_outcome_t play(wh_run_arguments_t *arguments, wh_script_run_t *run) {
+    const wh_script_run_outcome_t outcome = wh_script_run(run, &arguments->run);
+    if (arguments->plays_again) {
+        wh_reel_pack(&arguments->reel, &arguments->run);
+    }
+    return outcome;
+}
+
 int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_script_run_t run;
     wh_signals_t signals = {0};
-    if (!wh_run_files_are_apart(arguments, NULL)) {
+    if (!may_begin(arguments)) {
         return WH_EXIT_USAGE;
     }
     if (wh_run_files_wanted(&arguments->files)) {
@@ -385,7 +443,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
                                ? WH_FLOW_WAYS
                                : WH_FLOW_VISITS;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
-    const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
+    const wh_script_run_outcome_t outcome = play(arguments, &run);
     int status = hand_on(arguments, &run, &signals, outcome);
     if (run.record.layout && wh_live_shows(arguments->live, run.record.layout)) {
         wh_live_stay(arguments->live);
@@ -396,6 +454,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     arguments->live = NULL;
     wh_signals_close(&signals);
     wh_script_run_close(&run);
+    wh_reel_close(&arguments->reel);
     return status;
 }
 

@@ -5,6 +5,7 @@
 
 #include "../log/recording.h"
 #include "../mcs/script_run.h"
+#include "../play/reel.h"
 #include "../print/record_print.h"
 #include "../report/document.h"
 #include "../text/options.h"
@@ -50,7 +51,9 @@ typedef struct {
     const char *command;           /* the subcommand that plays it again; null: run */
     wh_run_files_t files;
     wh_run_counting_t counting;
-    wh_live_t *live; /* its page; null: none */
+    wh_live_t *live;  /* its page; null: none */
+    bool plays_again; /* the page of `files` does, by the engine of `make playground` */
+    wh_reel_t reel;   /* what that page takes along */
 } wh_run_arguments_t;
 
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
@@ -60,6 +63,10 @@ extern const wh_option_t wh_run_options[];
  * check. */
 extern const wh_option_t wh_run_counting_options[];
 void wh_run_counting_check(const void *filled, struct argp_state *state);
+
+/* --live, for a run in this process: also into a wh_run_arguments_t, with its check. */
+extern const wh_option_t wh_run_again_options[];
+void wh_run_again_check(const void *filled, struct argp_state *state);
 
 /* The help of --counted of subcommands that play many runs, for WH_MCS_COUNT_BLIND. */
 #define WH_RUN_COUNTED_HELP                                                                                  \

@@ -11,8 +11,8 @@ const wh_option_t wh_serve_cell_options[] = {
      WH_OPTION_REAL, .variable = offsetof(wh_serve_cell_arguments_t, timeout_s), 1e-3, 1e6},
     {"lcm", 0, NULL, "Publish over LCM what motion control and simulator would say to each other",
      WH_OPTION_FLAG, .variable = offsetof(wh_serve_cell_arguments_t, lcm)},
-    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --sim or --lcm",
-     WH_OPTION_TEXT, .variable = offsetof(wh_serve_cell_arguments_t, url)},
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --sim or --lcm", WH_OPTION_TEXT,
+     .variable = offsetof(wh_serve_cell_arguments_t, url)},
     {0}};
 
 void wh_serve_cell_check(const void *given, struct argp_state *state) {

@@ -29,8 +29,7 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"lcm-url", 0, "URL",
-     "Where LCM is (default " WH_NODE_URL "; with a board: nowhere)", WH_OPTION_TEXT,
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "; with a board: nowhere)", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
     {"outputs", 0, "FILE", "Take the valves from this file, one value per gripper, 0 or 1", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, outputs)},

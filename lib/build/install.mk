@@ -37,6 +37,7 @@ entry = $(call place,lib/include/$(1).h,$(PREFIX)/include/$(1).h)
 install: install-library install-collision
 	@$(call places,$(PROGRAM_PLACES)) $(foreach file,$(EXAMPLES),$(call place,$(file),$(SHARE)/$(file:lua/%=%))) \
 	    $(foreach file,$(MANUALS),$(call place,$(file),$(DOCUMENTS)/$(file))) \
+	    if [ -e $(B)/playground/report_engine.html ]; then $(call place,$(B)/playground/report_engine.html,$(SHARE)/report_engine.html) true; fi && \
 	    if [ -e $(B)/manual/index.html ]; then mkdir -p '$(DESTDIR)$(DOCUMENTS)/html' && cp -R $(B)/manual/. '$(DESTDIR)$(DOCUMENTS)/html'; fi && \
 	    echo 'installed into $(DESTDIR)$(PREFIX)'
 

@@ -97,6 +97,6 @@ $(PLAYGROUND)/engine.js: $(PLAYGROUND)/engine.a lib/build/playground.mk
 # ------------------------------------------------------------------------------------------------- the page
 EM_FILES := $(filter lua/examples/% lua/layouts/% lua/patterns/%,$(LUA_SOURCES)) $(wildcard lua/layouts/*.urdf lua/layouts/*.stl)
 EM_PAGE := $(wildcard lib/playground/page/*)
-$(B)/playground.html: $(PLAYGROUND)/engine.js lib/playground/assemble.js $(EM_PAGE) $(EM_FILES)
+$(B)/playground.html: $(PLAYGROUND)/engine.js lib/playground/assemble.js lib/playground/worker.js $(EM_PAGE) $(EM_FILES)
 	@echo "  PAGE $@"
 	$(Q)node lib/playground/assemble.js $(PLAYGROUND) $(JAVASCRIPT) $(VERSION) $@ $(EM_FILES)

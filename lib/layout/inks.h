@@ -1,5 +1,5 @@
-/* The colours of a cell's parts in drawings (`layout --svg`) and in glTF. The report's page has paler ones, in
- * its style sheet. */
+/* The colours of a cell's parts in drawings (`layout --svg`) and in glTF. The report's page has paler ones,
+ * in its style sheet. */
 #ifndef WH_LAYOUT_INKS_H
 #define WH_LAYOUT_INKS_H
 

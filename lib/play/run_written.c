@@ -31,7 +31,12 @@ void wh_run_written_close(wh_run_written_t *written) {
 bool wh_run_written_page(void *user, FILE *out) {
     wh_run_written_t *written = user;
     const char *page = written->document.signals ? WH_PAGE_REPORT : WH_PAGE_FLOW;
-    return wh_page_write(out, page, written->document.title, written->text, written->size, written->message);
+    const wh_page_content_t content = {.title = written->document.title,
+                                       .document = written->text,
+                                       .document_size = written->size,
+                                       .cell = written->cell,
+                                       .engine = written->engine};
+    return wh_page_write_content(out, page, &content, written->message);
 }
 
 bool wh_run_written_scene(void *user, FILE *out) {

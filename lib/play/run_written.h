@@ -11,6 +11,7 @@ typedef struct {
     char *text; /* the document's */
     size_t size;
     char *command;                       /* that makes the run again */
+    const char *cell, *engine;           /* what its page plays again by (reel.h); null: it does not */
     char message[WH_PAGE_MESSAGE_BYTES]; /* why a page was not written; empty: errno says it */
 } wh_run_written_t;
 

@@ -1,5 +1,6 @@
 /* assemble.js FOLDER JAVASCRIPT VERSION OUT FILE...: makes the playground, one HTML file, of the engine in FOLDER, the page beside this
- * script, JavaScript of others below JAVASCRIPT, and the files that the page offers. */
+ * script, JavaScript of others below JAVASCRIPT, and the files that the page offers. Beside the engine it leaves report_engine.html: what
+ * a report of --live takes along. */
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -54,6 +55,16 @@ function part(whole, name) {
     return fs.existsSync(path.join(own, name)) ? inlined(read(path.join(own, name))) : whole;
 }
 
+/* A report takes it along to play its run again. */
+const ENGINE = `<script type="application/octet-stream" id="engine" data-version="@version@">@engine.wasm@</script>
+<script type="application/octet-stream" id="worker">@worker@</script>
+`;
+
 const html = read(path.join(own, 'playground.html.in')).replace(/@([\w.-]+)@/g, part);
-fs.writeFileSync(`${out}.new`, html);
-fs.renameSync(`${out}.new`, out);
+function write(name, text) {
+    fs.writeFileSync(`${name}.new`, text);
+    fs.renameSync(`${name}.new`, name);
+}
+
+write(out, html);
+write(path.join(folder, 'report_engine.html'), ENGINE.replace(/@([\w.-]+)@/g, part));

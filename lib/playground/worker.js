@@ -1,4 +1,4 @@
-/* The worker of the playground: plays scripts by the engine. It hears { kind: "open", module, files }, then
+/* The worker of the playground: plays scripts by the engine. It hears { kind: "open", module, files, folder }, then
  *   { kind: "run", id, request, changed }   changed: { path: text } over the files of the page
  *   { kind: "page", name }, { kind: "definitions" }, and { kind: "report", id }, { kind: "json", id } of the run with this id
  * and answers with { kind, id, ... }: "answer" with what wh_playground_run says, "document" with UTF-8 bytes or why there is
@@ -8,15 +8,26 @@
 (function () {
     'use strict';
 
-    const own = { module: null, files: {}, engine: null, id: null };
+    const own = { module: null, files: {}, folder: '/', engine: null, id: null };
     const encoder = new TextEncoder();
 
+    /* From the root, without dots: folders are made by such paths alone. */
+    function absolute(path) {
+        const parts = [];
+        (path.startsWith('/') ? path : `${own.folder}/${path}`).split('/').forEach((part) => {
+            if (part === '..') {
+                parts.pop();
+            } else if (part !== '.' && part !== '') {
+                parts.push(part);
+            }
+        });
+        return `/${parts.join('/')}`;
+    }
+
     function write(engine, path, content) {
-        const folder = path.slice(0, path.lastIndexOf('/'));
-        if (folder) {
-            engine.FS.mkdirTree(folder);
-        }
-        engine.FS.writeFile(path, typeof content === 'string' ? encoder.encode(content) : content);
+        const place = absolute(path);
+        engine.FS.mkdirTree(place.slice(0, place.lastIndexOf('/')));
+        engine.FS.writeFile(place, typeof content === 'string' ? encoder.encode(content) : content);
     }
 
     /* An instance with these files; those below /javascript are large, and only pages need them. */
@@ -30,6 +41,8 @@
                 return {};
             },
         });
+        engine.FS.mkdirTree(own.folder);
+        engine.FS.chdir(own.folder);
         Object.entries(own.files).filter(([path]) => withPages || !path.startsWith('/javascript/'))
             .forEach(([path, content]) => write(engine, path, content));
         Object.entries(changed).forEach(([path, content]) => write(engine, path, content));
@@ -62,9 +75,10 @@
     }
 
     const PARTS = {
-        async open({ module, files }) {
+        async open({ module, files, folder }) {
             own.module = module;
             own.files = files;
+            own.folder = folder || '/';
         },
         run,
         async page({ name }) {

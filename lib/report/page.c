@@ -28,8 +28,7 @@ static const struct {
 
 typedef struct {
     FILE *out;
-    const char *title, *document;
-    size_t document_size;
+    const wh_page_content_t *content;
     char *message;
 } page_t;
 
@@ -111,6 +110,25 @@ static bool is_template(const char *name) {
 
 static bool write_template(const page_t *page, const char *text);
 
+/* True if the name stands for something of this page's content. */
+static bool write_content(const page_t *page, const char *name) {
+    const wh_page_content_t *content = page->content;
+    if (strcmp(name, "title") == 0) {
+        write_title(page->out, content->title);
+    } else if (strcmp(name, "document") == 0) {
+        char *packed = wh_packed_text(content->document, content->document_size);
+        fputs(packed, page->out);
+        free(packed);
+    } else if (strcmp(name, "policy") == 0) {
+        fputs(content->cell ? " 'wasm-unsafe-eval' blob:; worker-src blob:" : "", page->out);
+    } else if (content->cell && (strcmp(name, "cell") == 0 || strcmp(name, "engine") == 0)) {
+        fputs(name[0] == 'c' ? content->cell : content->engine, page->out);
+    } else {
+        return false;
+    }
+    return true;
+}
+
 static bool write_ours(const page_t *page, const wh_embedded_t *ours) {
     if (is_template(ours->name)) {
         return write_template(page, (const char *)ours->text);
@@ -124,15 +142,11 @@ static bool write_named(const page_t *page, const char *name) {
     if (ours) {
         return write_ours(page, ours);
     }
-    if (strcmp(name, "title") == 0) {
-        write_title(page->out, page->title);
+    if (write_content(page, name)) {
         return true;
     }
-    if (strcmp(name, "document") == 0) {
-        char *packed = wh_packed_text(page->document, page->document_size);
-        fputs(packed, page->out);
-        free(packed);
-        return true;
+    if (strcmp(name, "rerun") == 0) {
+        return !page->content->cell || write_named(page, "rerun.html.in");
     }
     for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; ++i) {
         if (strcmp(foreign[i].name, name) == 0) {
@@ -173,7 +187,13 @@ static bool write_template(const page_t *page, const char *text) {
 
 bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]) {
-    const page_t page = {out, title, document, size, message};
+    const wh_page_content_t content = {.title = title, .document = document, .document_size = size};
+    return wh_page_write_content(out, name, &content, message);
+}
+
+bool wh_page_write_content(FILE *out, const char *name, const wh_page_content_t *content,
+                           char message[WH_PAGE_MESSAGE_BYTES]) {
+    const page_t page = {out, content, message};
     const wh_embedded_t *template = find_ours(name);
     if (!template) {
         (void)snprintf(message, WH_PAGE_MESSAGE_BYTES, "the program was built without its page");

@@ -8,7 +8,8 @@
  * program reads the latter when it makes the page, from where the distribution puts them:
  * /usr/share/javascript, unless the program was built with another JAVASCRIPT= or the environment has
  * WAFERHAND_JAVASCRIPT. @title@ is the page's title. @document@ is the object of report/document.h or
- * report/study_document.h, packed (text/packed.h): an hour's run shrinks to a seventh.
+ * report/study_document.h, packed (text/packed.h): an hour's run shrinks to a seventh. @policy@ and @rerun@
+ * are empty but in a page that plays its run again, which has @cell@ and @engine@ as well.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H
@@ -33,5 +34,17 @@
  * owner of `out` asks whether it took all. */
 bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]);
+
+/* All that a page can hold. With `cell` and `engine` that of a report or of a flow plays its run again
+ * (play/reel.h has both); null: it does not. */
+typedef struct {
+    const char *title, *document;
+    size_t document_size;
+    const char *cell, *engine;
+} wh_page_content_t;
+
+/* Likewise, with all of it. */
+bool wh_page_write_content(FILE *out, const char *name, const wh_page_content_t *content,
+                           char message[WH_PAGE_MESSAGE_BYTES]);
 
 #endif

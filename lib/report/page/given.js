@@ -78,9 +78,11 @@
         return parse(given);
     }
 
+    const isNext = () => kept.next !== undefined;
+
     function take() {
         attend();
-        return kept.next !== undefined ? Promise.resolve(taken())
+        return isNext() ? Promise.resolve(taken())
             : new Promise((done) => { kept.waiting = () => done(taken()); });
     }
 
@@ -118,5 +120,5 @@
         }
     }
 
-    W.given = { take, seen, shown };
+    W.given = { attend, hand, isNext, take, seen, shown };
 }(window.Waferhand));

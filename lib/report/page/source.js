@@ -1,5 +1,6 @@
 /* The source of the page's document: the page itself carries it, or, if what it carries is empty, the page around it hands it
- * over (given.js). The page of a live cell has stream.js in its place, and no other part asks which. A source has
+ * over (given.js). A page that plays its run again shows what it carries, then what the next runs hand over (rerun.js). The
+ * page of a live cell has stream.js in its place, and no other part asks which. A source has
  *   take()          promises the document, or fails with the reason
  *   follow(heard)   calls `heard(kind, what)` from then on: "frame", "growth" and "anew" with their object, "state" with what is
  *                   known of the program and of the connection. A file never calls it. */
@@ -25,8 +26,14 @@
 
     W.source = {
         async take() {
-            const text = await inflate(document.getElementById('document').textContent.trim());
-            return text === '' ? W.given.take() : JSON.parse(text);
+            const text = W.given.isNext() ? '' : await inflate(document.getElementById('document').textContent.trim());
+            if (text === '') {
+                return W.given.take();
+            }
+            if (document.getElementById('cell')) {
+                W.given.attend();
+            }
+            return JSON.parse(text);
         },
         follow() {},
     };

@@ -232,6 +232,17 @@ class Live(unittest.TestCase):
             self.assertAlmostEqual(now["axes"][axis], value(curve, now["t"]), delta=0.02)
 
     @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
+    def test_first_command(self):
+        """The page of a simulator shows the first command of a run while it runs, once, though the run was not known when it began."""
+        simulator = self.serve("sim", "lua/layouts/paper.lua", "--page", "0")
+        stream = page.Stream(simulator, simulator.document())
+        control = self.serve("mcs", TRANSFER, "--page", "0", "--rate", "1")
+        stream.wait(lambda told: any("GET A 1" in json.dumps(what) for _, _, what in told))
+        self.assertLess(simulator.document()["document"]["duration_s"], 1.9)
+        self.assertEqual(json.dumps(simulator.document()["document"]["run"]["commands"]).count("GET A 1"), 1)
+        control.kill()
+
+    @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
     def test_two_processes(self):
         """sim and mcs, each with its page: both show the run; a second one begins anew, also after the simulator was killed."""
         simulator = self.serve("sim", "lua/layouts/paper.lua", "--page", "0")
