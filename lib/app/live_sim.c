@@ -26,6 +26,14 @@ static bool kind_of(int32_t phase, wh_news_kind_t *kind) {
     }
 }
 
+static bool does_begin(const waferhand_mcs *message) {
+    return message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
+}
+
+static bool does_end(const waferhand_mcs *message) {
+    return message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
+}
+
 /* Forgets the task's command, which has ended or begins; at the run's end all. True if one was known. */
 static bool forget(wh_live_sim_t *sim, const waferhand_mcs *message) {
     size_t kept = 0;
@@ -42,8 +50,8 @@ static bool forget(wh_live_sim_t *sim, const waferhand_mcs *message) {
 /* True if the message is news. The first command of a run begins before the simulator knows the run: so it is
  * told by the message that it goes on. An answer, such as that of STATUS, ends no command. */
 static bool is_news(wh_live_sim_t *sim, const waferhand_mcs *message) {
-    const bool begins = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
-    const bool ends = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
+    const bool begins = does_begin(message);
+    const bool ends = does_end(message);
     if (ends && message->request != 0) {
         return false;
     }
