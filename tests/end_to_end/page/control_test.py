@@ -74,7 +74,7 @@ class Control(unittest.TestCase):
 
     def test_robots_of_a_flow_are_held(self):
         """Each alone, and all; the flow waits, and goes on to its end. What cannot be held is refused by name."""
-        served = self.serve("run", "tests/end_to_end/data/flow_mixed_run.lua", "--set", "wafers=2", "--json", "--page", "0", "--page-control",
+        served = self.serve("run", "tests/end_to_end/data/flow_mixed_run.lua", "--set", "wafers=1", "--json", "--page", "0", "--page-control",
                             "--rate", "20")
         for _ in range(500):
             if any(each["text"].startswith("GET ") for each in served.document()["document"]["run"]["commands"]):
