@@ -42,14 +42,15 @@
  * can stop it in the window gripped; then the phase shows it. Each result is known at most (end -
  * retracted) / speed seconds after the begin.
  *
- * All numbers are double, also in a library of floats, because the results matter to micrometres. It uses
+ * All numbers that come and go are double, also in a library of floats. It computes with its own numbers:
+ * with floats a path is right to 5e-4 mm, and a processor without double takes no software for it. It uses
  * no heap and no state, and has equal bits on every machine. A firmware that calls none of these functions
  * does not link them.
  *
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_edge_at                      800    856     968   1040
+ *     stack of wh_edge_at                      992   1048     568    560
  *     size of wh_edge_t                         80             80
  *     size of wh_edge_wafer_t                   64             64
  *     size of wh_edge_place_t                   48             48

@@ -50,8 +50,8 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_grips_init                   280    344     424    488
- *     stack of wh_grips_step                  1952   2008    1448   1504
+ *     stack of wh_grips_init                   432    528     352    336
+ *     stack of wh_grips_step                  1952   2008    1120   1152
  *     stack of wh_grips_support                416    480     232    268
  *     stack of wh_grips_hash                   156    184     152    184
  *     size of wh_grip_t                         88             88

@@ -1,11 +1,12 @@
 /* States of grips that came from elsewhere. */
+#include "../math/hash.h"
 #include "grips.h"
 
 /* An excess beyond this, mm, is impossible, because wafers lie on blades. */
 #define MOST_EXCESS 1000
 
 static bool is_finite(double value) {
-    return value - value == 0;
+    return (wh_double_bits(value) >> 52 & 0x7ff) != 0x7ff;
 }
 
 static void open_state(const wh_grip_t *grip, wh_grip_state_t *state) {

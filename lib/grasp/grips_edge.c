@@ -1,6 +1,4 @@
 /* The edge grip within a step: the plunger's motion, and the wafer that it meets. */
-#include <math.h>
-
 #include "grasp_internal.h"
 #include "grips_internal.h"
 
@@ -13,28 +11,30 @@ static const wh_edge_t *edge_of(const wh_turn_t *turn) {
 }
 
 /* The way of the plunger in this slice. */
-static double way_of(const wh_turn_t *turn) {
+static wh_real_t way_of(const wh_turn_t *turn) {
     const double *speeds = turn->grips->parts.speeds;
-    const double speed = edge_of(turn)->speed;
-    const bool is_slow = speeds && speeds[turn->index] < speed;
-    return (is_slow ? speeds[turn->index] : speed) * turn->grips->parts.dt;
+    const wh_real_t speed = (wh_real_t)edge_of(turn)->speed;
+    const wh_real_t slow = speeds ? (wh_real_t)speeds[turn->index] : speed;
+    return (slow < speed ? slow : speed) * (wh_real_t)turn->grips->parts.dt;
 }
 
 static void go_back(const wh_turn_t *turn) {
     wh_grip_state_t *state = state_of(turn);
-    const wh_edge_t *edge = edge_of(turn);
-    state->s -= way_of(turn);
+    const wh_real_t back = (wh_real_t)state->s - way_of(turn);
+    const double retracted = edge_of(turn)->retracted;
+    state->s = (double)back;
     state->phase = WH_GRIP_OPENING;
     state->wafer = WH_NONE;
     state->excess = 0;
-    if (state->s <= edge->retracted) {
-        state->s = edge->retracted;
+    if (back <= (wh_real_t)retracted) {
+        state->s = retracted;
         state->phase = WH_GRIP_OPEN;
     }
 }
 
 /* Without a wafer the place gives only the window. */
-static wh_edge_place_t place_at(const wh_turn_t *turn, double s) {
+static wh_edge_place_t place_at(const wh_turn_t *turn, wh_real_t at) {
+    const double s = (double)at;
     const wh_grip_state_t *state = state_of(turn);
     wh_edge_place_t place = {WH_EDGE_FREE, WH_EDGE_SHORT, false, s, 0, 0, 0};
     (void)wh_edge_at(edge_of(turn), state->wafer == WH_NONE ? NULL : &state->lying, s, &place);
@@ -43,8 +43,8 @@ static wh_edge_place_t place_at(const wh_turn_t *turn, double s) {
 
 /* The phase of a plunger that stands, or CLOSING. */
 static wh_grip_phase_t phase_at(const wh_turn_t *turn, const wh_edge_place_t *place) {
-    const bool stands =
-        place->phase == WH_EDGE_SEATED || place->phase == WH_EDGE_JAMMED || place->s >= edge_of(turn)->end;
+    const bool stands = place->phase == WH_EDGE_SEATED || place->phase == WH_EDGE_JAMMED ||
+                        (wh_real_t)place->s >= (wh_real_t)edge_of(turn)->end;
     if (!stands) {
         return WH_GRIP_CLOSING;
     }
@@ -56,13 +56,13 @@ static wh_grip_phase_t phase_at(const wh_turn_t *turn, const wh_edge_place_t *pl
 
 static void go_on(const wh_turn_t *turn) {
     wh_grip_state_t *state = state_of(turn);
-    const wh_edge_place_t place = place_at(turn, state->s + way_of(turn));
+    const wh_edge_place_t place = place_at(turn, (wh_real_t)state->s + way_of(turn));
     state->s = place.s;
     state->phase = phase_at(turn, &place);
     state->excess = place.excess;
     if (turn->gripper->wafer != WH_NONE) {
-        turn->gripper->gripper_from_wafer.r.x = state->x + (wh_real_t)(place.x - state->lying.x);
-        turn->gripper->gripper_from_wafer.r.y = state->y + (wh_real_t)(place.y - state->lying.y);
+        turn->gripper->gripper_from_wafer.r.x = state->x + ((wh_real_t)place.x - (wh_real_t)state->lying.x);
+        turn->gripper->gripper_from_wafer.r.y = state->y + ((wh_real_t)place.y - (wh_real_t)state->lying.y);
     }
 }
 
@@ -90,11 +90,13 @@ void wh_edge_turn_move(const wh_turn_t *turn) {
 /* The notch's axis as it lies on the blade; any direction for a wafer that stands on edge. */
 static void turn_notch(const wh_mat3_t *gripper_from_wafer, wh_edge_wafer_t *lying) {
     const wh_mat3_t *m = gripper_from_wafer;
-    const double x = (double)m->m[0][0] * lying->notch_x + (double)m->m[0][1] * lying->notch_y;
-    const double y = (double)m->m[1][0] * lying->notch_x + (double)m->m[1][1] * lying->notch_y;
-    const double length = sqrt(x * x + y * y);
-    lying->notch_x = length > 0 ? x / length : 0;
-    lying->notch_y = length > 0 ? y / length : 1;
+    const wh_real_t notch_x = (wh_real_t)lying->notch_x;
+    const wh_real_t notch_y = (wh_real_t)lying->notch_y;
+    const wh_real_t x = m->m[0][0] * notch_x + m->m[0][1] * notch_y;
+    const wh_real_t y = m->m[1][0] * notch_x + m->m[1][1] * notch_y;
+    const wh_real_t length = wh_real_sqrt(x * x + y * y);
+    lying->notch_x = (double)(length > 0 ? x / length : 0);
+    lying->notch_y = (double)(length > 0 ? y / length : 1);
 }
 
 /* Finds how this wafer lies on the blade; false if it lies where no plunger may meet it. */
@@ -153,7 +155,7 @@ void wh_edge_turn_pick(const wh_turn_t *turn) {
     state->x = 0;
     state->y = 0;
     find_wafer(turn);
-    const wh_edge_place_t last = place_at(turn, edge_of(turn)->end);
+    const wh_edge_place_t last = place_at(turn, (wh_real_t)edge_of(turn)->end);
     if (state->wafer != WH_NONE && last.phase != WH_EDGE_JAMMED && last.phase != WH_EDGE_MISSED) {
         grip(turn, (size_t)state->wafer);
     }

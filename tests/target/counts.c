@@ -1,10 +1,11 @@
-/* Counts the instructions of the check, a step and the estimate of a scan, on a Cortex-M under
- * emulation. With `-icount shift=6` each instruction lasts 64 ns, and SysTick counts at 25 MHz.
+/* Counts the instructions of the check, a step, the estimate of a scan, an edge grip and the begin of
+ * a line, on a Cortex-M under emulation. With `-icount shift=6` each instruction lasts 64 ns, and SysTick counts at 25 MHz.
  * Prints "NAME COUNT" for each case; the count repeats exactly.
  *
  * The worst case of a step is the worst of 20,000 random steps and of some that are built on
  * purpose. */
 #include <stdio.h>
+#include <string.h>
 
 #include <waferhand.h>
 
@@ -169,6 +170,97 @@ static void count_worst(const char *name, wh_check_t check) {
     printf("step %s worst %u\n", name, (unsigned)worst);
 }
 
+/* -------------------------------------------------------------------------------------------- grips, and lines */
+
+static const wh_edge_t edge = {150, 1.5, 1.5, 3.14159265358979323846 / 6, 2.5, -8, -0.25, 1.3, 4, 40};
+
+/* The plunger at s, with a wafer 1 mm off centre whose notch's axis is at (x, y). */
+static void count_edge(const char *name, double x, double y, double s, wh_edge_phase_t wanted) {
+    wh_edge_wafer_t wafer = wh_edge_wafer_nominal(150);
+    wh_edge_place_t place;
+    wafer.y = 1;
+    wafer.notch_x = x;
+    wafer.notch_y = y;
+    start();
+    const wh_status_t status = wh_edge_at(&edge, &wafer, s, &place);
+    const uint32_t count = stop();
+    printf("edge %s %u%s\n", name, (unsigned)count, status == WH_OK && place.phase == wanted ? "" : " WRONG");
+}
+
+/* A gripper of each kind holds a wafer, and the edge grip's plunger is on its way. */
+static void count_grips(void) {
+    static wh_edge_wafer_t shapes[WAFERS];
+    static wh_wafer_t seen[WAFERS];
+    static wh_grip_state_t states[GRIPPERS];
+    static const wh_grip_t kinds[GRIPPERS] = {
+        {WH_GRIP_EDGE, {150, 1.5, 1.5, 3.14159265358979323846 / 6, 2.5, -8, -0.25, 1.3, 4, 40}},
+        {WH_GRIP_VACUUM, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}};
+    const wh_grips_parts_t parts = {0, 0.001, kinds, shapes, NULL, 0, states, seen, NULL};
+    static wh_grips_t grips;
+    wh_event_list_t list = {events, GRIPPERS * WH_EVENTS_PER_GRIPPER, 0};
+    begin_table(WH_CHECK_SAMPLED, false, 10);
+    for (size_t w = 0; w < WAFERS; ++w) {
+        shapes[w] = wh_edge_wafer_nominal(150);
+    }
+    inputs[0].base_from_gripper = at(0, 1, 0);
+    inputs[1].base_from_gripper = at(0, 0, 10);
+    wh_status_t status = wh_grips_init(&grips, &parts, &table);
+    for (int slice = 0; slice < 100 && status == WH_OK; ++slice) {
+        status = wh_grips_step(&grips, inputs, &list);
+    }
+    start();
+    status = status == WH_OK ? wh_grips_step(&grips, inputs, &list) : status;
+    const uint32_t count = stop();
+    const bool good = status == WH_OK && states[0].phase == WH_GRIP_CLOSING && table.counters.picked == 2;
+    printf("step grips carry %u%s\n", (unsigned)count, good ? "" : " WRONG");
+}
+
+/* A straight line of 300 mm that begins: of the arm of motion/robot.h, and of a SCARA. */
+static void count_line(const char *name, const wh_carrier_t *scara) {
+    static wh_machine_t machine;
+    static wh_track_t track;
+    memset(&machine, 0, sizeof machine);
+    wh_robot_default(&machine.robot);
+    machine.chuck_limits = machine.robot.limits[3];
+    machine.carrier = scara;
+    machine.axis_count = 4;
+    machine.gripper_count = 1;
+    machine.mounts[0].axis = WH_NONE;
+    machine.mounts[0].effector_from_gripper = wh_pose_identity();
+    wh_status_t status = wh_track_init(&track, &machine, 1000);
+    wh_segment_t segment = wh_track_blank(&track);
+    segment.kind = WH_SEGMENT_LINE;
+    segment.travel = wh_vec3(scara ? 0 : 300, scara ? 300 : 0, 0);
+    start();
+    status = status == WH_OK ? wh_track_begin(&track, &segment) : status;
+    const uint32_t count = stop();
+    printf("begin line %s %u%s\n", name, (unsigned)count, status == WH_OK ? "" : " WRONG");
+}
+
+static void count_lines(void) {
+    static wh_chain_t chain;
+    static wh_carrier_t scara;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    chain.kind = WH_CHAIN_SCARA;
+    chain.links[0] = chain.links[1] = 400;
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        chain.limits[axis] = robot.limits[0];
+        chain.travel[axis] = robot.travel[0];
+    }
+    chain.limits[WH_CHAIN_Z] = robot.limits[2];
+    chain.travel[WH_CHAIN_Z] = robot.travel[2];
+    chain.travel[WH_CHAIN_REACH].min = WH_REAL(-3);
+    chain.travel[WH_CHAIN_REACH].max = WH_REAL(3);
+    chain.home[WH_CHAIN_Z] = robot.travel[2].min;
+    chain.home[WH_CHAIN_REACH] = 2;
+    const wh_status_t status = wh_carrier_init(&scara, &chain);
+    count_line("polar", NULL);
+    if (!WH_REAL_IS_SLOW) { /* in software it takes longer than the counter can count */
+        count_line(status == WH_OK ? "scara" : "scara WRONG", &scara);
+    }
+}
+
 #if defined(__ARM_FP) && (__ARM_FP & 8) != 0
 /* Here the processor has double in hardware. */
 static void count_estimate(void) {
@@ -206,5 +298,9 @@ int main(void) {
     count_carry();
     count_worst("sampled", WH_CHECK_SAMPLED);
     count_worst("swept", WH_CHECK_SWEPT);
+    count_edge("rolling", 0, 1, -0.5, WH_EDGE_ROLLING);
+    count_edge("over_notch", 0.86602540378443865, 0.5, -0.5, WH_EDGE_ROLLING);
+    count_grips();
+    count_lines();
     return 0;
 }

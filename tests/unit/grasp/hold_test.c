@@ -9,8 +9,12 @@
 
 #if defined(WH_FLOAT)
 #define CLOSELY 1e-5
+#define EDGE_NEAR 5e-4 /* mm, of an edge grip's path */
+#define EDGE_SAME 1e-5 /* of a number that it hands on */
 #else
 #define CLOSELY 1e-9
+#define EDGE_NEAR 1e-9
+#define EDGE_SAME 0
 #endif
 
 static wh_pads_t pads;
@@ -297,15 +301,15 @@ static void an_edge_grip_seats_a_round_wafer_by_the_exact_form(void **state) {
         const double x = reach * cos(edge.alpha) - sqrt(pow(wafer.radius + edge.rest, 2) - across * across);
         const wh_edge_place_t place = edge_at(&edge, &wafer, edge.end);
         assert_true(place.phase == WH_EDGE_SEATED);
-        assert_near(place.x, x, 1e-9);
-        assert_near(place.y, 0, 1e-9);
-        assert_near(place.s, x - (wafer.radius - edge.radius), 1e-9);
+        assert_near(place.x, x, EDGE_NEAR);
+        assert_near(place.y, 0, EDGE_NEAR);
+        assert_near(place.s, x - (wafer.radius - edge.radius), EDGE_NEAR);
         assert_true(place.held == (place.s >= edge.gripped_from && place.s <= edge.gripped_to));
     }
     const wh_edge_t edge = wh_edge_default(150);
     wh_edge_wafer_t larger = notch_at(90);
     larger.radius = 150.1;
-    assert_near(edge_at(&edge, &larger, 4).x, -0.115457, 5e-7);
+    assert_near(edge_at(&edge, &larger, 4).x, -0.115457, 5e-7 + EDGE_NEAR);
 }
 
 /* Known values: 3 mm rests in a SEMI notch; the largest shift of all angles. */
@@ -317,7 +321,7 @@ static void a_rest_over_the_notch_sinks_in(void **state) {
         const double shift = shift_with_notch_at(30 - a);
         angle = shift > largest ? a : angle;
         largest = shift > largest ? shift : largest;
-        assert_near(shift_with_notch_at(-30 + a), shift, 1e-9);
+        assert_near(shift_with_notch_at(-30 + a), shift, EDGE_NEAR);
     }
     assert_near(shift_with_notch_at(30), 0.550, 5e-4);
     assert_near(largest, 0.867, 7e-4);
@@ -325,7 +329,7 @@ static void a_rest_over_the_notch_sinks_in(void **state) {
     const double sign = angle < 0 ? 1 : -1;
     assert_near(shift_with_notch_at(30 - sign * 0.1), 0.369, 5e-4);
     assert_near(shift_with_notch_at(30 + sign * 0.4), 0.046, 5e-4);
-    assert_near(shift_with_notch_at(30 + 0.8), 0, 1e-9);
+    assert_near(shift_with_notch_at(30 + 0.8), 0, EDGE_NEAR);
 }
 
 /* The pin's distance from points along both flanks, up to the corners. */
@@ -368,8 +372,8 @@ static void a_sunk_rest_touches_the_notchs_outline(void **state) {
         const double y = 151.5 * sin(edge.alpha) - place.y;
         assert_true(place.phase == WH_EDGE_SEATED);
         assert_true(wh_edge_meets_notch(&wafer, 151.5 * cos(edge.alpha), 151.5 * sin(edge.alpha)));
-        assert_near(hypot(x, -151.5 * sin(edge.alpha) - place.y), wafer.radius + 1.5, 1e-9);
-        assert_near(nearest_of_outline(&wafer, x, y), 1.5, 1e-6);
+        assert_near(hypot(x, -151.5 * sin(edge.alpha) - place.y), wafer.radius + 1.5, EDGE_NEAR);
+        assert_near(nearest_of_outline(&wafer, x, y), 1.5, 1e-6 + EDGE_NEAR);
     }
 }
 
@@ -378,9 +382,9 @@ static void a_notch_at_the_plunger_moves_the_plunger_alone(void **state) {
     const wh_edge_t edge = wh_edge_default(150);
     wh_edge_wafer_t wafer = notch_at(180);
     const wh_edge_place_t place = edge_at(&edge, &wafer, 4);
-    assert_near(place.x, 0, 1e-9);
-    assert_near(place.y, 0, 1e-9);
-    assert_near(place.s, 1 - 0.6 * (sqrt(2) - 1), 1e-9);
+    assert_near(place.x, 0, EDGE_NEAR);
+    assert_near(place.y, 0, EDGE_NEAR);
+    assert_near(place.s, 1 - 0.6 * (sqrt(2) - 1), EDGE_NEAR);
     assert_true(place.held);
     static const double spread[2][3] = {{1, 89, 0.744}, {1.25, 95, 1.036}};
     for (size_t i = 0; i < 2; ++i) {
@@ -406,12 +410,13 @@ static void on_its_path_the_wafer_never_jumps(void **state) {
         wafer.y = off * sin(towards);
         wh_edge_place_t before = edge_at(&edge, &wafer, edge.retracted);
         assert_true(before.phase == WH_EDGE_FREE && before.window == WH_EDGE_RETRACTED);
-        assert_true(before.x == wafer.x && before.y == wafer.y);
+        assert_near(before.x, wafer.x, EDGE_SAME);
+        assert_near(before.y, wafer.y, EDGE_SAME);
         for (double s = edge.retracted; s < edge.end; s += 0.01) {
             const wh_edge_place_t now = edge_at(&edge, &wafer, s);
             assert_true(now.phase >= before.phase && now.phase <= WH_EDGE_SEATED);
             assert_true(hypot(now.x - before.x, now.y - before.y) < 0.1);
-            assert_true(now.phase == WH_EDGE_SEATED || now.s == s);
+            assert_true(now.phase == WH_EDGE_SEATED || fabs(now.s - s) <= EDGE_SAME);
             seen |= 1 << now.phase;
             before = now;
         }
@@ -430,7 +435,7 @@ static void beyond_the_clearance_a_wafer_jams(void **state) {
     wh_edge_place_t place = edge_at(&edge, &wafer, 4);
     assert_true(place.phase == WH_EDGE_JAMMED && place.window == WH_EDGE_SHORT && !place.held);
     assert_near(place.excess, 0.25, 1e-12);
-    assert_near(place.s, -2.75, 1e-9);
+    assert_near(place.s, -2.75, EDGE_NEAR);
     assert_true(place.x == wafer.x && place.y == 0);
     assert_int_equal(edge_at(&edge, &wafer, -2.76).phase, WH_EDGE_FREE);
     wafer.x = 0;
