@@ -21,7 +21,9 @@ static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     simulator->slice_s = physics->slice_s;
     simulator->vacuum = physics->vacuum;
     simulator->pads = physics->pads;
+    const wh_doors_t doors = simulator->physics.doors; /* at home, if there are any */
     wh_physics_state_start(&simulator->physics, physics);
+    simulator->physics.doors = doors;
     if (simulator->given.gripping) {
         (void)simulator->given.gripping->complete(simulator, simulator->table.storage.grippers,
                                                   simulator->physics.grips);

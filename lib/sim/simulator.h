@@ -6,7 +6,7 @@
  * these):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               404    320     268    240
- *     stack of wh_simulator_set_physics        280    272     232    224
+ *     stack of wh_simulator_set_physics        352    344     280    264
  *     stack of wh_simulator_step              1608   1544    1104   1112
  *     stack of wh_simulator_step:sampled      1608   1544    1104   1112
  *     stack of wh_simulator_view                32     36      24     40
@@ -104,7 +104,7 @@ wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latchi
 /* Gives the simulator doors (doors.h), each at home, in place of its earlier ones; at first it has none.
  * The array must outlive the simulator and its copies. It refuses more than WH_DOORS, no array
  * (WH_STATUS_OUT_OF_RANGE), and the other cases of wh_simulator_set_scanning; the simulator is then
- * unchanged. Call it after wh_simulator_set_physics. Cost: linear in doors. */
+ * unchanged. Cost: linear in doors. */
 wh_status_t wh_simulator_set_doors(wh_simulator_t *simulator, const wh_door_set_t *set)
     WH_SYMBOL(wh_simulator_set_doors);
 

@@ -68,7 +68,7 @@ check-builds:
 # all paths takes long. `make check` runs clang's, which ends early in a long function; `make verify` runs the whole of it, and
 # gcc's (tests/verify/analysers).
 SOURCES := $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
-CHECKED_TESTS := $(filter %.c,$(TEST_SOURCES)) $(addsuffix .c,$(TOOLS) $(BENCHES)) tests/firmware/controller.c $(wildcard tests/fuzz/*.c)
+CHECKED_TESTS := $(filter %.c,$(TEST_SOURCES)) $(addsuffix .c,$(TOOLS) $(BENCHES)) tests/firmware/controller.c tests/firmware/edge_gripper.c $(wildcard tests/fuzz/*.c)
 CHECKED_CXX_TESTS := $(filter %.cpp,$(TEST_SOURCES))
 CXX_LOGS := $(PROGRAM_CXX_SOURCES:%.cpp=$(B)/tidy/%.log)
 TEST_LOGS := $(CHECKED_TESTS:%.c=$(B)/clang/%.log)

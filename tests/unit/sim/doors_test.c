@@ -38,6 +38,17 @@ static void doors_begin_at_home(void **state) {
     assert_near(wh_door_pose(&doors[0], 40).r.z, 40, 0);
 }
 
+/* The order of the calls does not matter: physics that come later leave the doors at home. */
+static void doors_stay_when_physics_come_later(void **state) {
+    (void)state;
+    const wh_physics_t physics = wh_physics_default();
+    assert_int_equal(wh_simulator_set_physics(&simulator, &physics), WH_OK);
+    doors_begin_at_home(state);
+    go(0.2, 99.8);
+    assert_near(at()[0], 0.2, 0);
+    assert_near(at()[1], 99.8, 0);
+}
+
 static void a_door_follows_its_axis_to_the_bit(void **state) {
     (void)state;
     for (int i = 1; i <= 10; ++i) {
@@ -216,6 +227,7 @@ int main(void) {
 #define TEST(name) cmocka_unit_test_setup(name, set_up_doors)
     const struct CMUnitTest tests[] = {
         TEST(doors_begin_at_home),
+        TEST(doors_stay_when_physics_come_later),
         TEST(a_door_follows_its_axis_to_the_bit),
         TEST(a_stuck_door_stays_and_comes_after),
         TEST(a_slow_door_goes_as_fast_as_its_fault_says),
