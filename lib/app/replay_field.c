@@ -7,6 +7,7 @@
 
 #include "../loop/field_map.h"
 #include "../loop/field_run.h"
+#include "../print/segments.h"
 #include "../text/array.h"
 #include "../text/digits.h"
 #include "../text/json.h"
@@ -36,6 +37,9 @@ const wh_option_t wh_replay_field_options[] = {
      "With --moves: an axis rests while it goes less than N mm or degrees from row to row (default 1e-6: its "
      "numbers stand)",
      WH_OPTION_REAL, .variable = offsetof(wh_replay_field_arguments_t, rest), 1e-9, 1e3},
+    {"segments", 0, "FILE.h",
+     "With --field: write what it did as C that a firmware test compiles and plays again, to the same hash",
+     WH_OPTION_TEXT, .variable = offsetof(wh_replay_field_arguments_t, segments)},
     {0}};
 
 void wh_replay_field_check(const void *filled, struct argp_state *state) {
@@ -47,6 +51,7 @@ void wh_replay_field_check(const void *filled, struct argp_state *state) {
                    {"gap", given->gap_s > 0},
                    {"within", given->within_s > 0},
                    {"moves", given->moves != NULL},
+                   {"segments", given->segments != NULL},
                    {"record", given->record.slices || given->record.all},
                    {"set", given->layout.parameters.count > 0},
                    {"memory", given->layout.memory_mib > 0}};
@@ -75,6 +80,7 @@ typedef struct {
     wh_plant_t plant;
     wh_field_run_t run;
     wh_field_moves_t moves;
+    wh_segments_t segments;
     heard_t *heard;
     size_t heard_count, heard_capacity;
 } replay_t;
@@ -328,13 +334,31 @@ static bool has_axes_of_moves(const wh_layout_t *layout) {
     return false;
 }
 
+/* ----------------------------------------------------------------------------------------------- segments */
+
+static void keep_slice(void *user, const wh_command_t *command, size_t line) {
+    wh_segments_keep(&((replay_t *)user)->segments, command, line);
+}
+
+/* The file is written whatever the verdict: a log that differs makes the better test. */
+static bool write_segments(replay_t *replay) {
+    const char *path = replay->arguments->segments;
+    const uint64_t hash = wh_protocol_server_hash(&replay->plant.simulation->server);
+    const char *expected = path ? wh_segments_end(&replay->segments, hash) : NULL;
+    if (expected) {
+        fprintf(stderr, "--segments: %s: not written (expected %s)\n", path, expected);
+    }
+    return !expected && wh_file_write("--segments", path, wh_segments_write, &replay->segments, NULL);
+}
+
 /* ------------------------------------------------------------------------------------------------ playing */
 
 static int conclude(replay_t *replay) {
     char reason[WH_PLANT_TEXT * 2];
     const int status = judge(replay, reason, sizeof reason);
     wh_plant_tell_over(&replay->plant, status == SAME, reason);
-    if (!wh_file_write("--moves", replay->arguments->moves, write_moves, replay, NULL)) {
+    if (!wh_file_write("--moves", replay->arguments->moves, write_moves, replay, NULL) ||
+        !write_segments(replay)) {
         return WH_EXIT_USAGE;
     }
     const int printed =
@@ -373,6 +397,11 @@ static int play(replay_t *replay, wh_node_t *node, const wh_layout_t *layout) {
     replay->moves = (wh_field_moves_t){.layout = layout,
                                        .rest = arguments->rest > 0 ? arguments->rest : USUAL_REST,
                                        .gap_s = replay->run.options.gap_s};
+    if (arguments->segments) {
+        wh_segments_begin(&replay->segments, layout, arguments->field, arguments->segments);
+        replay->run.stepped = keep_slice;
+        replay->run.stepped_user = replay;
+    }
     int status = WH_EXIT_USAGE;
     if (wh_field_play(&replay->run) && replay->run.rows > 0) {
         status = conclude(replay);
@@ -389,6 +418,7 @@ static void forget(replay_t *replay) {
     }
     free(replay->heard);
     wh_field_moves_free(&replay->moves);
+    wh_segments_free(&replay->segments);
     wh_field_close(&replay->field);
 }
 
@@ -414,12 +444,17 @@ static int play_recorded(replay_t *replay, const wh_layout_t *layout) {
 static bool is_apart(const wh_replay_field_arguments_t *arguments) {
     const char *option = NULL;
     const char *record = wh_record_arguments_path(&arguments->record, &option);
-    const wh_named_file_t named[] = {{"the layout", arguments->layout.path, false},
-                                     {"--field", arguments->field, false},
-                                     {"--columns", arguments->columns, false},
-                                     {"--moves", arguments->moves, true},
-                                     {option, record, true}};
+    const wh_named_file_t named[] = {
+        {"the layout", arguments->layout.path, false}, {"--field", arguments->field, false},
+        {"--columns", arguments->columns, false},      {"--moves", arguments->moves, true},
+        {"--segments", arguments->segments, true},     {option, record, true}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], true);
+}
+
+static bool are_writable(const wh_replay_field_arguments_t *arguments, const wh_layout_t *layout) {
+    return (!arguments->moves ||
+            (has_axes_of_moves(layout) && wh_file_is_writable("--moves", arguments->moves))) &&
+           (!arguments->segments || wh_file_is_writable("--segments", arguments->segments));
 }
 
 int wh_replay_field(wh_replay_field_arguments_t *arguments, bool json) {
@@ -428,8 +463,7 @@ int wh_replay_field(wh_replay_field_arguments_t *arguments, bool json) {
     const wh_layout_t *layout = is_apart(arguments) ? wh_layout_arguments_load(&arguments->layout) : NULL;
     replay.arguments = arguments;
     replay.json = json;
-    if (layout && (!arguments->moves ||
-                   (has_axes_of_moves(layout) && wh_file_is_writable("--moves", arguments->moves)))) {
+    if (layout && are_writable(arguments, layout)) {
         const wh_sandbox_limits_t limits = {.memory_bytes = (size_t)(arguments->layout.memory_mib * 1048576)};
         if (wh_field_open(&replay.field, arguments->field, arguments->columns, layout, &limits)) {
             status = play_recorded(&replay, layout);

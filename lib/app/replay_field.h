@@ -8,7 +8,7 @@
 
 /* Zero it to begin with. */
 typedef struct {
-    const char *field, *columns, *moves;
+    const char *field, *columns, *moves, *segments;
     double gap_s, within_s, rest;
     wh_record_arguments_t record;
     wh_layout_arguments_t layout; /* its path is the operand */

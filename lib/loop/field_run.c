@@ -44,6 +44,9 @@ static bool play_slice(wh_field_run_t *run, const wh_real_t q[], uint32_t on) {
         note(&run->jumped_line, run->jumped, text, run->field->line);
     }
     run->status = wh_plant_step(run->plant);
+    if (run->status == WH_OK && run->stepped) {
+        run->stepped(run->stepped_user, &run->plant->command, run->field->line);
+    }
     return run->status == WH_OK;
 }
 

@@ -35,7 +35,10 @@ typedef struct {
     wh_field_log_t *field;
     wh_plant_t *plant;
     wh_field_moves_t *moves; /* null: nobody asks for them */
-    uint64_t rows, between;  /* read; and of them, those between two slices, whose axes no slice had */
+    /* Takes each slice that the cell has taken, by the row towards which it goes; may be null. */
+    void (*stepped)(void *user, const wh_command_t *command, size_t line);
+    void *stepped_user;
+    uint64_t rows, between; /* read; and of them, those between two slices, whose axes no slice had */
     double first_s, last_s;
     uint64_t holes;
     double longest_s; /* between two rows, before the line: */
@@ -47,7 +50,7 @@ typedef struct {
 } wh_field_run_t;
 
 /* Plays the whole log. False if a row is refused by the reader, with the field's message, or by the cell. All
- * three must be open; `run` is filled in from `options`, `field`, `plant` and `moves` on. */
+ * three must be open; `run` is filled in from `options` to `stepped_user`. */
 bool wh_field_play(wh_field_run_t *run);
 
 /* The log's time of the plant's last slice. */

@@ -43,7 +43,7 @@ static void name_constants(wh_segments_writer_t *writer) {
 }
 
 static void read_lines(wh_segments_writer_t *writer) {
-    FILE *in = fopen(writer->of->record->script, "r");
+    FILE *in = fopen(writer->of->source, "r");
     char *line = NULL;
     size_t size = 0;
     while (in && getline(&line, &size, in) >= 0) {
@@ -68,9 +68,13 @@ static void free_lines(wh_segments_writer_t *writer) {
 
 /* -------------------------------------------------------------------------------------------------- rows */
 
-/* Writes a line of the script without the blanks around it, and in a form that cannot end a comment. */
-static void write_in_comment(FILE *out, const char *text) {
-    size_t length = strlen(text);
+/* The bytes of a log's line that stand above its rows, at most. */
+#define LOG_LINE 100
+
+/* Writes the first `most` bytes of a line of the script without the blanks around it, and in a form that
+ * cannot end a comment. */
+static void write_some_in_comment(FILE *out, const char *text, size_t most) {
+    size_t length = strnlen(text, most);
     while (length > 0 && isspace((unsigned char)text[length - 1])) {
         --length;
     }
@@ -79,6 +83,17 @@ static void write_in_comment(FILE *out, const char *text) {
         const bool ends = i > blanks && strchr("*/", text[i]) && strchr("*/", text[i - 1]);
         fputs(ends ? " " : "", out);
         fputc(iscntrl((unsigned char)text[i]) || text[i] == '\\' ? ' ' : text[i], out);
+    }
+}
+
+static void write_in_comment(FILE *out, const char *text) {
+    write_some_in_comment(out, text, strlen(text));
+}
+
+static void write_line(const wh_segments_writer_t *writer, int32_t line) {
+    fprintf(writer->out, "line %" PRId32 ": ", line);
+    if (line > 0 && (size_t)line <= writer->line_count) {
+        write_some_in_comment(writer->out, writer->lines[line - 1], writer->of->record ? SIZE_MAX : LOG_LINE);
     }
 }
 
@@ -92,27 +107,34 @@ static void write_command(const wh_segments_writer_t *writer, int32_t index) {
     const wh_command_record_t *command = &record->commands[index];
     fputs("    /* ", writer->out);
     if (!writer->is_told[index]) {
-        fprintf(writer->out, "line %d: ", command->line);
-        if (command->line > 0 && (size_t)command->line <= writer->line_count) {
-            write_in_comment(writer->out, writer->lines[command->line - 1]);
-            fputs(" : ", writer->out);
-        }
+        write_line(writer, command->line);
+        fputs(command->line > 0 && (size_t)command->line <= writer->line_count ? " : " : "", writer->out);
     }
     writer->is_told[index] = true;
     write_in_comment(writer->out, command->text ? command->text : "");
     fputs(" */\n", writer->out);
 }
 
+static void write_origin(const wh_segments_writer_t *writer, int32_t origin) {
+    if (writer->of->record) {
+        write_command(writer, origin);
+    } else {
+        fputs("    /* ", writer->out);
+        write_line(writer, origin);
+        fputs(" */\n", writer->out);
+    }
+}
+
 static void put_row(const wh_segments_writer_t *writer, size_t i) {
     static const char *const kinds[] = {
         [WH_PLAYED_AXES] = "AXES", [WH_PLAYED_LINE] = "LINE",     [WH_PLAYED_WAY] = "WAY",
         [WH_PLAYED_VIA] = "VIA",   [WH_PLAYED_VALVES] = "VALVES", [WH_PLAYED_MORE] = "MORE",
-        [WH_PLAYED_SLOW] = "SLOW", [WH_PLAYED_POINT] = "POINT",
+        [WH_PLAYED_SLOW] = "SLOW", [WH_PLAYED_POINT] = "POINT",   [WH_PLAYED_PLACE] = "PLACE",
     };
     const wh_played_row_t *row = &writer->of->rows[i];
     const wh_segments_origin_t *origin = &writer->of->origins[i];
     if (i == 0 || origin->command != origin[-1].command) {
-        write_command(writer, origin->command);
+        write_origin(writer, origin->command);
     }
     fprintf(writer->out, "    {%" PRId64 ", %" PRId64 ", WH_PLAYED_%s, %s, %" PRId32 ", 0x%" PRIx32 ", ",
             row->after, row->slices, kinds[row->kind], row->is_cut ? "true" : "false", row->gripper,
@@ -249,20 +271,24 @@ static void put_counts(const wh_segments_writer_t *writer) {
 static void put_head(const wh_segments_writer_t *writer, uint64_t contents) {
     const char *upper = writer->upper;
     fputs("/* ", writer->out);
-    write_in_comment(writer->out, writer->of->record->script);
+    write_in_comment(writer->out, writer->of->source);
     fprintf(
         writer->out,
         " as waferhand " WH_VERSION " played it: see waferhand/sim/played.h.\n"
-        " * Each line of the script stands above its rows, and the command that it gave. */\n"
+        " * Each line of the %s. */\n"
         "#ifdef %s_RUN_H\n#if %s_RUN_H != 0x%016" PRIx64 "u\n"
         "#error \"another file has the names %s_run and %s_WAFERS: call one of the two files otherwise\"\n"
         "#endif\n#else\n#define %s_RUN_H 0x%016" PRIx64 "u\n\n#include <waferhand.h>\n\n",
+        writer->of->record ? "script stands above its rows, and the command that it gave"
+                           : "log stands above its rows",
         upper, upper, contents, writer->prefix, upper, upper, contents);
 }
 
 static void put_contents(wh_segments_writer_t *writer) {
     read_lines(writer);
-    writer->is_told = wh_array_new(writer->of->record->command_count, sizeof *writer->is_told);
+    if (writer->of->record) {
+        writer->is_told = wh_array_new(writer->of->record->command_count, sizeof *writer->is_told);
+    }
     put_counts(writer);
     wh_segments_put_cell(writer);
     wh_segments_put_parts(writer);

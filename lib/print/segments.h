@@ -1,4 +1,5 @@
-/* `run --segments FILE`: the run that was played, as C source that a firmware test compiles and plays again.
+/* `--segments FILE` of `run`, and of `replay --field`: the run that was played, as C source that a firmware
+ * test compiles and plays again.
  *
  * The file is C99 and C++11. Its names begin with the file's own name up to the first dot: motion.h has
  * motion_run (a wh_played_t, see sim/played.h), motion_player_t (the memory that it needs), motion_begin and
@@ -15,7 +16,8 @@
 
 #include "../mcs/mcs.h"
 
-/* The origin of a row: the record's command that asked for it, or WH_NONE; and how many values it has. */
+/* The origin of a row: the record's command that asked for it, or WH_NONE; of a log its line. And how many
+ * values the row has. */
 typedef struct {
     int32_t command;
     size_t values;
@@ -28,15 +30,30 @@ typedef struct {
     wh_segments_origin_t *origins; /* by row */
     wh_pose_t *wafers;             /* where they lie first */
     size_t row_count, row_capacity, origin_capacity;
-    const wh_record_t *record;
+    const wh_record_t *record; /* null: of a log */
+    const char *source;        /* the script's or the log's path */
     const wh_layout_t *layout;
     const char *path; /* of the file, which gives the names */
+    /* For a log: where its axes are, and which valves are open, after so many slices. */
+    wh_real_t q[WH_AXES];
+    uint32_t open;
+    int64_t slices;
 } wh_segments_t;
 
 /* Makes the run that motion control has played with keeps_segments, and plays it. Returns null if it came to
  * the record's hash; else what was expected, a constant text. Call wh_segments_free in any case. Cost: that
  * of its slices. */
 const char *wh_segments_make(wh_segments_t *segments, const wh_mcs_t *mcs, const char *path);
+
+/* Begins a run that somebody outside of the program drives: a log's, against this layout. */
+void wh_segments_begin(wh_segments_t *segments, const wh_layout_t *layout, const char *source,
+                       const char *path);
+
+/* Takes a slice of it, by the log's line. */
+void wh_segments_keep(wh_segments_t *segments, const wh_command_t *command, size_t line);
+
+/* Ends it, and plays it. Returns null if it came to this hash; else as wh_segments_make does. */
+const char *wh_segments_end(wh_segments_t *segments, uint64_t hash);
 
 void wh_segments_free(wh_segments_t *segments);
 

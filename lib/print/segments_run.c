@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../layout/grips.h"
+#include "../math/hash.h"
 #include "../text/array.h"
 #include "segments.h"
 
@@ -167,6 +168,7 @@ static bool latches(const wh_mcs_kept_t *kept) {
     return any;
 }
 
+/* Those to which the run gives orders: a log has none. */
 static void find_sensors(wh_played_parts_t *parts, const wh_layout_t *layout, const wh_mcs_kept_t *kept) {
     if (scans(kept)) {
         parts->set_scanning = wh_simulator_set_scanning;
@@ -185,7 +187,9 @@ static wh_played_parts_t find_parts(const wh_segments_t *segments, const wh_mcs_
     parts.take_vias = has_row(segments, WH_PLAYED_VIA) ? wh_track_take_vias : NULL;
     parts.begin_slowly = has_row(segments, WH_PLAYED_SLOW) ? wh_track_begin_slowly : NULL;
     parts.set_doors = layout->machine.door_count > 0 ? wh_simulator_set_doors : NULL;
-    find_sensors(&parts, layout, kept);
+    if (kept) {
+        find_sensors(&parts, layout, kept);
+    }
     if (wh_layout_has_grips(layout)) {
         parts.set_grips = wh_simulator_set_grips;
         parts.grips = wh_layout_grips(layout);
@@ -201,17 +205,17 @@ static wh_pose_t *copy_places(const wh_layout_t *layout) {
     return wafers;
 }
 
-static void fill_run(wh_segments_t *segments, const wh_mcs_kept_t *kept) {
+static void fill_run(wh_segments_t *segments, const wh_mcs_kept_t *kept, int64_t slices, uint64_t hash) {
     const wh_layout_t *layout = segments->layout;
     segments->wafers = copy_places(layout);
     const wh_played_t run = {.machine = &layout->machine,
                              .rows = segments->rows,
                              .row_count = segments->row_count,
                              .motion_count = count_motions(segments),
-                             .faults = kept->faults,
-                             .fault_count = kept->fault_count,
-                             .orders = kept->orders,
-                             .order_count = kept->order_count,
+                             .faults = kept ? kept->faults : NULL,
+                             .fault_count = kept ? kept->fault_count : 0,
+                             .orders = kept ? kept->orders : NULL,
+                             .order_count = kept ? kept->order_count : 0,
                              .wafers = segments->wafers,
                              .wafer_count = layout->wafer_count,
                              .slice_us = layout->slice_us,
@@ -219,8 +223,8 @@ static void fill_run(wh_segments_t *segments, const wh_mcs_kept_t *kept) {
                              .physics = layout->physics,
                              .cell = layout->cell,
                              .parts = find_parts(segments, kept),
-                             .slices = segments->record->slices,
-                             .hash = segments->record->hash};
+                             .slices = slices,
+                             .hash = hash};
     segments->run = run;
 }
 
@@ -258,8 +262,9 @@ static bool play(wh_played_t *run) {
 
 const char *wh_segments_make(wh_segments_t *segments, const wh_mcs_t *mcs, const char *path) {
     const wh_mcs_kept_t *kept = wh_mcs_kept(mcs);
-    *segments =
-        (wh_segments_t){.record = wh_mcs_record(mcs), .layout = wh_mcs_true_layout(mcs), .path = path};
+    const wh_record_t *record = wh_mcs_record(mcs);
+    *segments = (wh_segments_t){
+        .record = record, .source = record->script, .layout = wh_mcs_true_layout(mcs), .path = path};
     if (!segments->layout) {
         return "a script with a cell";
     }
@@ -269,14 +274,65 @@ const char *wh_segments_make(wh_segments_t *segments, const wh_mcs_t *mcs, const
     if (kept->slows_down) {
         return "a script without a STOP that slows down";
     }
-    if (segments->record->missed > 0) {
+    if (record->missed > 0) {
         return "a simulator that misses no slice";
     }
     add_rows(segments, kept);
-    fill_run(segments, kept);
+    fill_run(segments, kept, record->slices, record->hash);
     return play(&segments->run) ? NULL
                                 : "a run from the layout's own start, which comes to its hash again when it "
                                   "is played";
+}
+
+/* ---------------------------------------------------------------------------------------------- a log */
+
+void wh_segments_begin(wh_segments_t *segments, const wh_layout_t *layout, const char *source,
+                       const char *path) {
+    *segments = (wh_segments_t){.source = source, .layout = layout, .path = path};
+    wh_machine_home(&layout->machine, segments->q);
+}
+
+/* The axes that stand elsewhere than in the slice before, bit for bit. */
+static uint32_t find_moved(const wh_segments_t *segments, const wh_command_t *command) {
+    uint32_t moved = 0;
+    for (size_t axis = 0; axis < command->axis_count; ++axis) {
+        if (wh_double_bits(segments->q[axis]) != wh_double_bits(command->axes[axis])) {
+            moved |= UINT32_C(1) << axis;
+        }
+    }
+    return moved;
+}
+
+static uint32_t find_open(const wh_command_t *command) {
+    uint32_t open = 0;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        open |= command->grippers[g].valve == WH_VALVE_OPEN ? UINT32_C(1) << g : 0;
+    }
+    return open;
+}
+
+void wh_segments_keep(wh_segments_t *segments, const wh_command_t *command, size_t line) {
+    const uint32_t moved = find_moved(segments, command);
+    const uint32_t open = find_open(command);
+    if (moved != 0) {
+        wh_played_row_t *row = add_row(segments, WH_PLAYED_PLACE, (int32_t)line);
+        row->after = command->seq - 1;
+        row->bits = moved;
+        add_places(segments, moved, command->axes, true);
+        memcpy(segments->q, command->axes, sizeof segments->q);
+    }
+    if (open != segments->open) {
+        wh_played_row_t *row = add_row(segments, WH_PLAYED_VALVES, (int32_t)line);
+        row->after = command->seq - 1;
+        row->bits = open;
+        segments->open = open;
+    }
+    segments->slices = command->seq;
+}
+
+const char *wh_segments_end(wh_segments_t *segments, uint64_t hash) {
+    fill_run(segments, NULL, segments->slices, hash);
+    return play(&segments->run) ? NULL : "a log that comes to its hash again when it is played";
 }
 
 void wh_segments_free(wh_segments_t *segments) {

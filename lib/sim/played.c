@@ -234,14 +234,33 @@ static wh_status_t switch_valves(wh_player_t *player) {
     return WH_OK;
 }
 
+/* Axes stand where somebody else than a track put them. */
+static wh_status_t place_axes(wh_player_t *player) {
+    wh_played_plan_t plan;
+    wh_status_t status = wh_played_read(player->run, &player->track, &player->row, &plan);
+    if (status == WH_OK) {
+        status = wh_machine_check_travel(player->run->machine, plan.segment.target);
+    }
+    if (status == WH_OK) {
+        memcpy(player->track.axes, plan.segment.target, sizeof player->track.axes);
+    }
+    return status;
+}
+
+static wh_status_t take_row(wh_player_t *player, wh_played_kind_t kind) {
+    if (kind == WH_PLAYED_VALVES) {
+        return switch_valves(player);
+    }
+    return kind == WH_PLAYED_PLACE ? place_axes(player) : begin_any_motion(player);
+}
+
 /* Takes the rows that begin with the next slice. */
 static void take_rows(wh_player_t *player) {
     const wh_played_t *run = player->run;
     while (player->status == WH_OK && player->row < run->row_count &&
            run->rows[player->row].after <= player->track.slice) {
         const size_t first = player->row;
-        player->status =
-            run->rows[first].kind == WH_PLAYED_VALVES ? switch_valves(player) : begin_any_motion(player);
+        player->status = take_row(player, run->rows[first].kind);
         for (size_t i = first; player->status == WH_OK && i < player->row; ++i) {
             note_row(player, &run->rows[i]);
         }

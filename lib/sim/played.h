@@ -1,4 +1,5 @@
-/* A played run, as `waferhand run SCRIPT --segments FILE` writes it in C, and its player.
+/* A played run, as `waferhand run SCRIPT --segments FILE` writes it in C, or `waferhand replay LAYOUT --field
+ * FILE.csv --segments FILE` from a controller's log, and its player.
  *
  * The file has everything that the run needs: machine, stations, wafers, vacuum, grips, sensors and faults
  * as constants, and its motions as rows, under the lines of the script that asked for them. Each row says in
@@ -22,7 +23,7 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; the stack is without that of the parts that come in by pointers):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_player_init                  544    536     392    392
+ *     stack of wh_player_init                  544    536     400    392
  *     stack of wh_player_next                 3488   3448    1892   1900
  *     size of wh_played_row_t                   80             56
  *     size of wh_played_motion_t              1952           1048
@@ -38,7 +39,8 @@ WH_HEADER_BEGIN
 WH_REFUSE_PACKING(played);
 
 /* The kinds of rows. A motion is a row of its kind, the rows that go on with its values, one that slows
- * it, and its via points. Targets are in the order of the axes in `bits`, rad and mm. */
+ * it, and its via points. A PLACE is a row, and those that go on with its values. Targets are in the order
+ * of the axes in `bits`, rad and mm. */
 typedef enum WH_FOUR_BYTES {
     WH_PLAYED_AXES,   /* a target for each axis: WH_SEGMENT_AXES */
     WH_PLAYED_LINE,   /* travel x, y, z, speed, acceleration: WH_SEGMENT_LINE */
@@ -47,7 +49,8 @@ typedef enum WH_FOUR_BYTES {
     WH_PLAYED_VALVES, /* no motion: from the next slice on the valves in `bits` are open, all others closed */
     WH_PLAYED_MORE,   /* the values of the row before go on */
     WH_PLAYED_SLOW,   /* of the motion: shares of speed and acceleration, pace (motion/slow.h) */
-    WH_PLAYED_POINT   /* of the VIA: blend, reach of both arms, the place of each axis (motion/via.h) */
+    WH_PLAYED_POINT,  /* of the VIA: blend, reach of both arms, the place of each axis (motion/via.h) */
+    WH_PLAYED_PLACE   /* no motion: from the next slice on each axis stands at its target */
 } wh_played_kind_t;
 
 /* The values of a row. */
@@ -60,7 +63,7 @@ typedef struct {
     wh_played_kind_t kind;
     bool is_cut;     /* something stopped the motion before its end */
     int32_t gripper; /* LINE, WAY, VIA: as in wh_segment_t */
-    uint32_t bits;   /* bit a: the motion moves axis a; VALVES: bit g: gripper g's is open */
+    uint32_t bits;   /* bit a: it moves or places axis a; VALVES: bit g: gripper g's is open */
     wh_real_t values[WH_PLAYED_VALUES];
 } wh_played_row_t;
 
@@ -160,11 +163,11 @@ wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh
     WH_SYMBOL(wh_player_init);
 
 /* Plays one slice. Returns false if there was none: the run is over, or player->status gives the reason of
- * a refusal: that of a row (wh_track_begin's, or WH_STATUS_OUT_OF_RANGE for one that is not as described
- * above), or of the slice. If a player was never initialised or was refused (WH_STATUS_NOT_INITIALISED, if it
- * is zeroed), only its simulator's mark is read; see WH_SIMULATOR_MARK. An observer may be set in
- * player->simulator before the first call. Cost: wh_track_next for each motion, wh_simulator_step, and 2 ns
- * for each axis. */
+ * a refusal: that of a row (wh_track_begin's, wh_machine_check_travel's, or WH_STATUS_OUT_OF_RANGE for one
+ * that is not as described above), or of the slice. If a player was never initialised or was refused
+ * (WH_STATUS_NOT_INITIALISED, if it is zeroed), only its simulator's mark is read; see WH_SIMULATOR_MARK. An
+ * observer may be set in player->simulator before the first call. Cost: wh_track_next for each motion,
+ * wh_simulator_step, and 2 ns for each axis. */
 bool wh_player_next(wh_player_t *player) WH_SYMBOL(wh_player_next);
 
 /* True if all slices were played, none was refused, and both hashes are those of the run. In float they are

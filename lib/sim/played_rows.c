@@ -1,10 +1,23 @@
 /* The rows of a played run: their order, and the motions that they describe. */
 #include "played_internal.h"
 
+static bool is_motion(wh_played_kind_t kind) {
+    return kind < WH_PLAYED_VALVES;
+}
+
+static bool begins(wh_played_kind_t kind) {
+    return kind <= WH_PLAYED_VALVES || kind == WH_PLAYED_PLACE;
+}
+
+/* A row that goes on with the one that began last. */
+static bool goes_on(wh_played_kind_t kind, wh_played_kind_t begun) {
+    return is_motion(begun) || (begun == WH_PLAYED_PLACE && kind == WH_PLAYED_MORE);
+}
+
 /* A row that begins something does so within the run, not before the one before it. */
 static bool is_in_time(const wh_played_t *run, const wh_played_row_t *row, int64_t after) {
     int64_t least = 0;
-    if (row->kind < WH_PLAYED_VALVES) {
+    if (is_motion(row->kind)) {
         least = 1;
     }
     return row->after >= after && row->after < run->slices && row->slices >= least &&
@@ -13,15 +26,17 @@ static bool is_in_time(const wh_played_t *run, const wh_played_row_t *row, int64
 
 wh_status_t wh_played_check_rows(const wh_played_t *run) {
     int64_t after = 0;
-    bool moves = false;
+    wh_played_kind_t begun = WH_PLAYED_VALVES;
     for (size_t i = 0; i < run->row_count; ++i) {
         const wh_played_row_t *row = &run->rows[i];
-        const bool begins = row->kind <= WH_PLAYED_VALVES;
-        if ((uint32_t)row->kind > WH_PLAYED_POINT || (begins ? !is_in_time(run, row, after) : !moves)) {
+        if ((uint32_t)row->kind > WH_PLAYED_PLACE ||
+            !(begins(row->kind) ? is_in_time(run, row, after) : goes_on(row->kind, begun))) {
             return WH_STATUS_OUT_OF_RANGE;
         }
-        after = begins ? row->after : after;
-        moves = begins ? row->kind < WH_PLAYED_VALVES : moves;
+        if (begins(row->kind)) {
+            after = row->after;
+            begun = row->kind;
+        }
     }
     return WH_OK;
 }

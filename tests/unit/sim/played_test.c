@@ -223,7 +223,7 @@ static void rows_that_are_not_as_described_are_refused(void **state) {
         {0, row_of(2, 0, WH_PLAYED_AXES, 0x1), 0},      /* no slice */
         {0, row_of(-1, 500, WH_PLAYED_AXES, 0x1), 0},   /* before the run */
         {0, row_of(2, 500, WH_PLAYED_MORE, 0x1), 0},    /* nothing began */
-        {0, row_of(2, 500, (wh_played_kind_t)8, 1), 0}, /* no kind */
+        {0, row_of(2, 500, (wh_played_kind_t)9, 1), 0}, /* no kind */
         {1, row_of(1, 0, WH_PLAYED_VALVES, 0x3), 0},    /* out of order */
         {2, row_of(520, 1, WH_PLAYED_AXES, 0x10), 0},   /* after the run */
         {2, row_of(510, 11, WH_PLAYED_AXES, 0x10), 0},  /* beyond it */
@@ -247,6 +247,61 @@ static void rows_that_are_not_as_described_are_refused(void **state) {
         rows[bad[i].row] = kept;
     }
     assert_int_equal(play(&run), WH_OK);
+}
+
+/* Axes that somebody else moved stand where their rows say, and stay there; a row that goes on has the other values. */
+static void axes_stand_where_they_are_placed(void **state) {
+    (void)state;
+    static const double first[] = {0.5, 650, 902, -0.25, 0.125};
+    rows[0] = row_of(0, 0, WH_PLAYED_PLACE, 0x1f);
+    memcpy(rows[0].values, (const wh_real_t[]){WH_REAL(0.5), 650, 902, WH_REAL(-0.25), WH_REAL(0.125)},
+           5 * sizeof(wh_real_t));
+    rows[1] = row_of(0, 0, WH_PLAYED_VALVES, 0x1);
+    rows[2] = row_of(3, 0, WH_PLAYED_PLACE, 0x4);
+    rows[2].values[0] = 910;
+    const wh_played_t run = run_of(3, 5);
+    const wh_played_room_t room = room_here();
+    assert_int_equal(wh_player_init(&player, &run, &room), WH_OK);
+    for (int64_t slice = 1; slice <= run.slices; ++slice) {
+        assert_true(wh_player_next(&player));
+        for (size_t axis = 0; axis < 5; ++axis) {
+            assert_true(player.command.axes[axis] == (axis == 2 && slice > 3 ? 910 : (wh_real_t)first[axis]));
+        }
+        assert_int_equal(player.command.grippers[0].valve, WH_VALVE_OPEN);
+    }
+    assert_false(wh_player_next(&player));
+    assert_int_equal(player.status, WH_OK);
+    const wh_player_t before = player;
+    rows[2].values[0] += WH_REAL(0.5);
+    assert_int_equal(play(&run), WH_OK);
+    assert_true(player.inputs != before.inputs);
+}
+
+static void places_that_are_not_as_described_are_refused(void **state) {
+    (void)state;
+    const wh_real_t bad[] = {1e9, -1e9, (wh_real_t)NAN, (wh_real_t)INFINITY};
+    rows[0] = row_of(1, 0, WH_PLAYED_PLACE, 0x2);
+    rows[0].values[0] = 600;
+    wh_played_t run = run_of(1, 5);
+    assert_int_equal(play(&run), WH_OK);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+        rows[0].values[0] = bad[i];
+        assert_int_not_equal(play(&run), WH_OK);
+        assert_int_equal(player.track.slice, 1);
+    }
+    rows[0].values[0] = 600;
+    rows[0].bits = 0x20;
+    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
+    rows[0].bits = 0x2;
+    run.row_count = 2;
+    rows[1] = row_of(1, 0, WH_PLAYED_SLOW, 0);
+    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE); /* no motion that could be slow */
+    rows[1] = row_of(1, 0, WH_PLAYED_POINT, 0);
+    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE);
+    rows[1] = row_of(0, 0, WH_PLAYED_PLACE, 0x2);
+    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE); /* out of order */
+    rows[1] = row_of(1, 0, WH_PLAYED_MORE, 0);
+    assert_int_equal(play(&run), WH_STATUS_OUT_OF_RANGE); /* one value too many */
 }
 
 /* ---------------------------------------------------------------------------------------- as a track has it */
@@ -524,6 +579,8 @@ int main(void) {
         cmocka_unit_test_setup(a_runs_two_slice_lengths_agree, set_up),
         cmocka_unit_test_setup(a_runs_faults_and_orders_are_in_order, set_up),
         cmocka_unit_test_setup(rows_that_are_not_as_described_are_refused, set_up),
+        cmocka_unit_test_setup(axes_stand_where_they_are_placed, set_up),
+        cmocka_unit_test_setup(places_that_are_not_as_described_are_refused, set_up),
         cmocka_unit_test_setup(rows_move_the_axes_as_a_track_does, set_up),
         cmocka_unit_test_setup(motions_at_once_move_their_own_axes, set_up),
         cmocka_unit_test_setup(a_motion_ends_in_the_slice_that_its_row_says, set_up),
