@@ -61,6 +61,7 @@
 
 #include "sim/latching.h"
 #include "sim/event_text.h"
+#include "sim/grasp_text.h"
 #include "sim/faults.h"
 #include "sim/scanning.h"
 #include "sim/doors.h"
@@ -68,6 +69,7 @@
 #include "sim/slice.h"
 #include "sim/simulator.h"
 #include "sim/played.h"
+#include "sim/size.h"
 #include "sim/snapshot.h"
 /* clang-format on */
 

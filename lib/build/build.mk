@@ -236,11 +236,30 @@ $(B)/libwaferhand_collision.a: $(COLLISION_OBJECTS) $(B)/sources
 	$(archive)
 $(B)/libwaferhand_lcm.a: $(MESSAGE_OBJECTS) $(B)/messages
 	$(archive)
-# The library exports what its public headers declare, and nothing else. Its name for the loader contains the ABI, and the
+# The interface for callers that are not C: sizes and offsets as JSON, and a symbol for each inline function. Nothing runs, so a
+# cross compiler does.
+INTERFACE_FLAGS = $(filter-out -DWH_BUILDING_LIBRARY,$(LIBRARY_FLAGS)) -w $(CPPFLAGS) $(CFLAGS) $(EXTRA) $(if $(GNU),-fno-lto)
+INTERFACE = $(CC) $(INTERFACE_FLAGS) -Ilib -E lib/build/interface.c | awk -v version=$(VERSION) -v real=$(if $(filter -DWH_FLOAT%,$(DEFINES)),float,double) \
+    -f lib/build/interface.awk
+$(B)/interface.json: lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
+	@mkdir -p $(@D)
+	@echo "  JSON $@"
+	$(Q)$(INTERFACE) -v make=json >$(B)/interface.c
+	$(Q)$(CC) $(INTERFACE_FLAGS) -Ilib -c -o $(B)/interface.o $(B)/interface.c
+	$(Q)LC_ALL=C sed -n '/^@begin$$/,/^@end$$/ { /^@/d; s/: \( *\)\(-*\) *\([0-9]\)/: \2\3/g; p }' $(B)/interface.o >$@ && test -s $@
+$(B)/inline_functions.c: lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
+	@mkdir -p $(@D)
+	$(Q)$(INTERFACE) -v make=inline >$@ && grep -q wh_symbol_of_ $@
+$(B)/pic/inline_functions.o: $(B)/inline_functions.c
+	@mkdir -p $(@D)
+	@echo "  PIC  $<"
+	$(Q)$(CCACHE) $(CC) $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden -Ilib $(CPPFLAGS) $(CFLAGS) $(EXTRA) -c -o $@ $<
+
+# The library exports what its public headers declare, inline functions too, and nothing else. Its name for the loader contains the ABI, and the
 # number type if that is float.
-$(B)/libwaferhand.so.$(ABI): $(MODULE_SUPPORT) $(B)/sources
+$(B)/libwaferhand.so.$(ABI): $(MODULE_SUPPORT) $(B)/pic/inline_functions.o $(B)/sources
 	@echo "  LD   $@"
-	$(LINK) -shared -Wl,-soname,libwaferhand.so.$(ABI),-z,defs,--as-needed -o $@ $(MODULE_SUPPORT) -lm
+	$(LINK) -shared -Wl,-soname,libwaferhand.so.$(ABI),-z,defs,--as-needed -o $@ $(MODULE_SUPPORT) $(B)/pic/inline_functions.o -lm
 	@ln -sf $(@F) $(@D)/libwaferhand.so
 # It uses the library's own shared one, so a program has each function once.
 $(B)/libwaferhand_collision.so.$(ABI): $(COLLISION_SUPPORT) $(B)/libwaferhand.so.$(ABI) $(B)/sources
@@ -278,7 +297,7 @@ COLLISION_USERS := $(foreach user,$(PROGRAM_ALONE) $(filter-out $(LIBRARY_TOGETH
 $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
 # The example firmware stands beside its tests.
-$(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o
+$(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o $(B)/obj/tests/firmware/edge_gripper.o
 $(B)/tests/property/chain_random: LIBS = $(shell pkg-config --libs orocos-kdl)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libwaferhand.a

@@ -12,7 +12,7 @@ public = $(filter-out %_internal.h,$(foreach room,$(1),$(wildcard lib/$(room)/*.
 # The library is one part, and collision is the second; `make install` adds the program and the rest.
 SHARED_LIBRARY := $(if $(SHARED),$(LIBDIR)/libwaferhand.so.$(ABI))
 CMAKE := $(LIBDIR)/cmake/waferhand/waferhand-config
-LIBRARY_PLACES := $(LIBDIR)/libwaferhand.a $(SHARED_LIBRARY) $(LIBDIR)/pkgconfig/waferhand.pc $(CMAKE).cmake $(CMAKE)-version.cmake
+LIBRARY_PLACES := $(LIBDIR)/libwaferhand.a $(SHARED_LIBRARY) $(LIBDIR)/waferhand/interface.json $(LIBDIR)/pkgconfig/waferhand.pc $(CMAKE).cmake $(CMAKE)-version.cmake
 LIBRARY_HEADERS := lib/waferhand.h $(call public,$(LIBRARY_ROOMS))
 SHARED_COLLISION := $(if $(SHARED),$(LIBDIR)/libwaferhand_collision.so.$(ABI))
 COLLISION_PLACES := $(LIBDIR)/libwaferhand_collision.a $(SHARED_COLLISION) $(LIBDIR)/pkgconfig/waferhand_collision.pc

@@ -2,7 +2,7 @@
 
 #include "../math/trig.h"
 #include "faults.h"
-#include "words_internal.h"
+#include "names_internal.h"
 
 /* The significant digits of a limit: no more than its number type keeps. */
 #if defined(WH_FLOAT)
@@ -53,17 +53,7 @@ static const char *degree_of(const said_t *said) {
 }
 
 static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
-    static const char *const kinds[] = {"wafer ", "gripper ", "part "};
-    const wh_event_names_t *names = said->names;
-    const char *name = names->find ? names->find(names->user, kind, index) : NULL;
-    if (name) {
-        put_text(said, name);
-    } else if (index == WH_NONE) {
-        put_text(said, "none");
-    } else {
-        put_text(said, kinds[kind]);
-        wh_words_integer(&said->words, (int64_t)index + names->first);
-    }
+    wh_names_put(said->names, &said->words, kind, index);
 }
 
 static void put_parts(said_t *said, const char *before, const char *after) {

@@ -79,7 +79,6 @@ typedef struct {
 } fixed_t;
 
 #define TOO_LARGE WH_REAL(1e15)
-#define MOST_DECIMALS 15
 
 /* Bits of a number: those of the mantissa, and the bias of the exponent. */
 #if defined(WH_FLOAT)
@@ -189,10 +188,10 @@ void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) {
 /* The number of decimals that show this number of significant digits. */
 static int decimals_for(fixed_t fixed, int digits) {
     int decimals = fixed.whole > 0 ? digits - count_digits(fixed.whole) : digits;
-    while (fixed.whole == 0 && decimals < MOST_DECIMALS && next_digit(&fixed) == 0) {
+    while (fixed.whole == 0 && decimals < WH_WORDS_DECIMALS && next_digit(&fixed) == 0) {
         ++decimals;
     }
-    return decimals < 0 ? 0 : decimals > MOST_DECIMALS ? MOST_DECIMALS : decimals;
+    return decimals < 0 ? 0 : decimals > WH_WORDS_DECIMALS ? WH_WORDS_DECIMALS : decimals;
 }
 
 /* True if this number of decimals shows no more than one decimal fewer. */
@@ -216,8 +215,15 @@ void wh_words_short(wh_words_t *words, wh_real_t value, int digits, int least) {
     put_number(words, value, fixed, decimals);
 }
 
+static bool is_too_large(wh_real_t value) {
+    return !(wh_real_abs(value) < TOO_LARGE);
+}
+
 /* Rounding keeps the order, so if two texts differ, their order is right. */
-static bool reads_same(wh_real_t a, wh_real_t b, int decimals) {
+bool wh_words_read_same(wh_real_t a, wh_real_t b, int decimals) {
+    if (is_too_large(a) || is_too_large(b)) {
+        return is_too_large(a) && is_too_large(b);
+    }
     fixed_t one = to_fixed(wh_real_abs(a));
     fixed_t other = to_fixed(wh_real_abs(b));
     const uint64_t digits = round_decimals(&one, decimals);
@@ -225,12 +231,12 @@ static bool reads_same(wh_real_t a, wh_real_t b, int decimals) {
 }
 
 int wh_words_apart(wh_real_t a, wh_real_t b, int least) {
-    if (a == b || !(wh_real_abs(a) < TOO_LARGE) || !(wh_real_abs(b) < TOO_LARGE)) {
+    if (a == b || is_too_large(a) || is_too_large(b)) {
         return least;
     }
     int decimals = least;
-    while (decimals < MOST_DECIMALS && reads_same(a, b, decimals)) {
+    while (decimals < WH_WORDS_DECIMALS && wh_words_read_same(a, b, decimals)) {
         ++decimals;
     }
-    return reads_same(a, b, decimals) ? least : decimals;
+    return wh_words_read_same(a, b, decimals) ? least : decimals;
 }

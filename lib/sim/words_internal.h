@@ -12,6 +12,9 @@ typedef struct {
     size_t size, length;
 } wh_words_t;
 
+/* The most decimals of a number. */
+#define WH_WORDS_DECIMALS 15
+
 /* An empty text. `buffer` may be null if `size` is 0. */
 wh_words_t wh_words_begin(char *buffer, size_t size) WH_SYMBOL(wh_words_begin);
 
@@ -31,5 +34,9 @@ void wh_words_short(wh_words_t *words, wh_real_t value, int digits, int least) W
 /* The fewest decimals, at least `least`, with which two numbers of one sign have different texts, and the
  * larger one reads as the larger; `least` if 15 show no difference. */
 int wh_words_apart(wh_real_t a, wh_real_t b, int least) WH_SYMBOL(wh_words_apart);
+
+/* True if two numbers of one sign have one text with so many decimals; of numbers from 1e15 on, if both are
+ * such. */
+bool wh_words_read_same(wh_real_t a, wh_real_t b, int decimals) WH_SYMBOL(wh_words_read_same);
 
 #endif

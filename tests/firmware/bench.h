@@ -37,7 +37,7 @@ extern "C" {
         }                                                                                                    \
     } while (0)
 
-enum { STATIONS = 2, WAFERS = 2, SAID = 4000 };
+enum { STATIONS = 2, WAFERS = 2, SAID = 4000, WHY = 2000 };
 
 /* The real machine: two stacks of three slots, 700 mm from the robot, at 0 and at 90 degrees. */
 static const wh_station_t stations[STATIONS] = {
@@ -55,6 +55,7 @@ static wh_simulator_t machine;
 static wh_command_t command;
 static wh_state_t state;
 static char said[SAID];
+static char why[WHY]; /* of a failure, with the table behind it */
 
 /* The pose of the gripper. This robot is of Waferhand's own kind: theta, R, Z and yaw. */
 static inline wh_pose_t gripper_pose(void) {
@@ -112,6 +113,22 @@ static inline int bench_set_up(void) {
 
 /* ------------------------------------------------------------------------------------------------ for the tests */
 
+/* Fails, and says where all wafers and the gripper are. */
+static inline void fail_with_table(const char *what) {
+    (void)snprintf(why, sizeof why, "%s:\n", what);
+    const size_t length = strlen(why);
+    (void)wh_grasp_text(&machine.table, NULL, why + length, sizeof why - length);
+    BENCH_FAIL(why);
+}
+
+/* A check of wafers and gripper. */
+#define BENCH_CHECK_TABLE(condition)                                                                         \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            fail_with_table("not " #condition);                                                              \
+        }                                                                                                    \
+    } while (0)
+
 static inline answer_t finish(answer_t answer) {
     for (int ms = 0; answer == CONTROLLER_BUSY && ms < 20000; ++ms) {
         tick();
@@ -154,22 +171,29 @@ static inline void assert_not_said(const char *text) {
     }
 }
 
-/* True if the wafer lies flat in this slot, within 0.1 mm of its middle. */
+/* The wafer lies flat in this slot, within 0.1 mm of its middle. */
 static inline void assert_lies_in(size_t wafer, int station, int slot) {
     wh_pose_t pose;
     int32_t holder;
     wh_place_t place;
-    BENCH_CHECK(wh_grasp_wafer(&machine.table, wafer, &pose, &holder) == WH_OK);
-    BENCH_CHECK(holder == WH_NONE);
-    BENCH_CHECK(wh_cell_locate(&machine.cell, &pose, &place));
-    BENCH_CHECK(place.station == station);
-    BENCH_CHECK(place.slot == slot);
-    BENCH_CHECK(wh_real_abs(place.dx) < WH_REAL(0.1) && wh_real_abs(place.dy) < WH_REAL(0.1) &&
-                wh_real_abs(place.dz) < WH_REAL(0.1));
+    BENCH_CHECK_TABLE(wh_grasp_wafer(&machine.table, wafer, &pose, &holder) == WH_OK);
+    BENCH_CHECK_TABLE(holder == WH_NONE);
+    BENCH_CHECK_TABLE(wh_cell_locate(&machine.cell, &pose, &place));
+    BENCH_CHECK_TABLE(place.station == station);
+    BENCH_CHECK_TABLE(place.slot == slot);
+    BENCH_CHECK_TABLE(wh_real_abs(place.dx) < WH_REAL(0.1) && wh_real_abs(place.dy) < WH_REAL(0.1) &&
+                      wh_real_abs(place.dz) < WH_REAL(0.1));
 }
 
 static inline void assert_held(size_t wafer) {
-    BENCH_CHECK(wafers[wafer].holder == 0);
+    BENCH_CHECK_TABLE(wafers[wafer].holder == 0);
+}
+
+/* The machine's table is as this one, to the bit. */
+static inline void assert_same_table(const wh_grasp_t *expected) {
+    if (wh_grasp_difference(expected, &machine.table, NULL, why, sizeof why) > 0) {
+        BENCH_FAIL(why);
+    }
 }
 
 #endif

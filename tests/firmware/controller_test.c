@@ -145,34 +145,74 @@ static void a_put_beside_the_middle_is_seen_from_outside(void **unused) {
 
 /* ------------------------------------------------------------------------------------------------------ a snapshot */
 
+/* All that the test has: a copy of it is a moment to which it can go back. */
+typedef struct {
+    wh_simulator_t machine;
+    wh_wafer_t wafers[WAFERS];
+    wh_gripper_t grippers[1];
+    wh_command_t command;
+    controller_t controller;
+    registers_t registers;
+} moment_t;
+
+static void save(moment_t *moment) {
+    moment->machine = machine;
+    memcpy(moment->wafers, wafers, sizeof wafers);
+    memcpy(moment->grippers, grippers, sizeof grippers);
+    moment->command = command;
+    moment->controller = controller;
+    moment->registers = registers;
+}
+
+static void go_back_to(const moment_t *moment) {
+    machine = moment->machine;
+    memcpy(wafers, moment->wafers, sizeof wafers);
+    memcpy(grippers, moment->grippers, sizeof grippers);
+    command = moment->command;
+    controller = moment->controller;
+    registers = moment->registers;
+}
+
+static void begin_get_up_to_the_switch(void) {
+    assert_int_equal(controller_get(&controller, 0, 1), CONTROLLER_BUSY);
+    while (controller.phase != SWITCH) {
+        tick();
+    }
+}
+
 /* The way to the slot is simulated once; each fault is then tried from that state. */
 static void many_faults_are_tried_from_one_moment(void **unused) {
     (void)unused;
     static const wh_fault_kind_t kinds[] = {WH_FAULT_NO_VACUUM, WH_FAULT_SENSOR_OFF, WH_FAULT_COMMAND_LOST};
     static const answer_t answers[] = {ERROR_NOT_TAKEN, ERROR_NOT_TAKEN, ERROR_NOT_TAKEN};
-    assert_int_equal(controller_get(&controller, 0, 1), CONTROLLER_BUSY);
-    while (controller.phase != SWITCH) {
-        tick();
-    }
-    static wh_simulator_t saved_machine;
-    static wh_wafer_t saved_wafers[WAFERS];
-    static wh_gripper_t saved_grippers[1];
-    const controller_t saved_controller = controller;
-    const registers_t saved_registers = registers;
-    const wh_command_t saved_command = command;
-    saved_machine = machine;
-    memcpy(saved_wafers, wafers, sizeof wafers);
-    memcpy(saved_grippers, grippers, sizeof grippers);
+    static moment_t before;
+    begin_get_up_to_the_switch();
+    save(&before);
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
-        controller = saved_controller;
-        registers = saved_registers;
-        command = saved_command;
-        machine = saved_machine;
-        memcpy(wafers, saved_wafers, sizeof wafers);
-        memcpy(grippers, saved_grippers, sizeof grippers);
+        go_back_to(&before);
         break_it(kinds[i], 0);
         assert_int_equal(finish(CONTROLLER_BUSY), answers[i]);
     }
+}
+
+/* A machine that went back to a moment ends as one that went on, to the bit. */
+static void a_moment_goes_on_as_it_did(void **unused) {
+    (void)unused;
+    static moment_t before;
+    static moment_t after;
+    begin_get_up_to_the_switch();
+    save(&before);
+    assert_int_equal(finish(CONTROLLER_BUSY), CONTROLLER_READY);
+    save(&after);
+    break_it(WH_FAULT_LEAK, WH_REAL(0.2));
+    assert_int_equal(put(1, 1), ERROR_WAFER_LOST);
+    go_back_to(&before);
+    assert_int_equal(finish(CONTROLLER_BUSY), CONTROLLER_READY);
+    wh_grasp_t expected = after.machine.table;
+    expected.storage.wafers = after.wafers;
+    expected.storage.grippers = after.grippers;
+    assert_same_table(&expected);
+    assert_true(wh_simulator_hash(&machine) == wh_simulator_hash(&after.machine));
 }
 
 int main(void) {
@@ -192,6 +232,7 @@ int main(void) {
         cmocka_unit_test_setup(a_put_onto_a_wafer_is_seen_from_outside, set_up),
         cmocka_unit_test_setup(a_put_beside_the_middle_is_seen_from_outside, set_up),
         cmocka_unit_test_setup(many_faults_are_tried_from_one_moment, set_up),
+        cmocka_unit_test_setup(a_moment_goes_on_as_it_did, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

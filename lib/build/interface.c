@@ -1,0 +1,2 @@
+/* The input of interface.awk, once it is preprocessed. */
+#include "waferhand.h"
