@@ -243,6 +243,7 @@ void wh_host_look(wh_host_t *host) {
         host->seen.open = find_doors(host, "open");
         host->seen.shut = find_doors(host, "shut");
         host->seen.sensors = wh_session_sensors(host->session);
+        host->seen.valves = wh_session_valves(host->session);
     }
     wh_host_tell_load_ports(host);
 }

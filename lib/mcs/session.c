@@ -152,6 +152,15 @@ uint32_t wh_session_sensors(const wh_session_t *session) {
     return session->mcs.state.sensors;
 }
 
+uint32_t wh_session_valves(const wh_session_t *session) {
+    const wh_track_t *track = &session->mcs.track;
+    uint32_t open = 0;
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        open |= track->valves[g] == WH_VALVE_OPEN ? 1U << g : 0;
+    }
+    return open;
+}
+
 void wh_session_poses(const wh_session_t *session, wh_pose_t poses[WH_GRIPPERS]) {
     wh_mcs_see_grippers(&session->mcs, poses);
 }
