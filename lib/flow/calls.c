@@ -225,7 +225,7 @@ static bool change(wh_flow_state_t *state, int32_t station) {
 
 bool wh_flow_calls_go(wh_flow_state_t *state) {
     bool went = false;
-    for (int32_t s = 0; s < (int32_t)state->tool->station_count; ++s) {
+    for (int32_t s = 0; state->calls.are_there && s < (int32_t)state->tool->station_count; ++s) {
         went = change(state, s) || went;
     }
     for (size_t i = 0; i < state->plan->call_count; ++i) {
@@ -241,7 +241,7 @@ static int64_t sooner(const wh_flow_state_t *state, int64_t us, int64_t than_us)
 int64_t wh_flow_calls_next(const wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     int64_t next_us = WH_FLOW_NEVER;
-    for (size_t s = 0; s < state->tool->station_count; ++s) {
+    for (size_t s = 0; state->calls.are_there && s < state->tool->station_count; ++s) {
         next_us = sooner(state, state->stations[s].changed_us, next_us);
     }
     for (size_t i = 0; i < plan->call_count; ++i) {

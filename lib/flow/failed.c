@@ -21,9 +21,11 @@ static bool is_of_step(const wh_flow_state_t *state, int32_t wafer, int32_t step
 int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place) {
     const int32_t last = wh_flow_last_step(state->plan, wafer);
     bool is_out = false;
+    if (state->failures.stations == 0) {
+        return step < last ? step + 1 : WH_FLOW_NONE;
+    }
     for (int32_t next = step + 1; next <= last; ++next) {
-        const bool has_failed = state->failures.stations > 0 &&
-                                wh_flow_step_has_failed(state, wh_flow_step_of(state->plan, wafer, next));
+        const bool has_failed = wh_flow_step_has_failed(state, wh_flow_step_of(state->plan, wafer, next));
         if (!has_failed && !(is_out && is_of_step(state, wafer, next, place))) {
             return next;
         }

@@ -188,8 +188,20 @@ void wh_flow_lock_turn(wh_flow_state_t *state, int32_t number) {
     }
 }
 
+/* True if some robot is told to bring a wafer that it has to where it stands. */
+static bool is_any_told(const wh_flow_state_t *state) {
+    bool found = false;
+    for (size_t r = 0; r < state->tool->robot_count && !found; ++r) {
+        found = is_told_to_bring(&state->robots[r], state->robots[r].station);
+    }
+    return found;
+}
+
 void wh_flow_locks_turn_for_kept(wh_flow_state_t *state) {
-    for (int32_t i = 0; !state->plan->turns && i < (int32_t)state->tool->station_count; ++i) {
+    if (state->plan->turns || !is_any_told(state)) {
+        return;
+    }
+    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         bool is_awaited = false;
         for (int32_t r = 0; state->tool->stations[i].is_lock && r < (int32_t)state->tool->robot_count; ++r) {
             is_awaited = is_awaited || is_bringing(state, i, r);

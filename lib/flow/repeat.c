@@ -24,9 +24,9 @@ static bool is_ahead(const wh_flow_state_t *state, int64_t us) {
 /* True if a robot carries a wafer on, or is about to. */
 static bool is_any_under_way(const wh_flow_state_t *state) {
     bool found = false;
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+    for (size_t r = 0; r < state->tool->robot_count && !found; ++r) {
         const wh_flow_action_t action = state->robots[r].action;
-        found = found || (action != WH_FLOW_IDLE && action != WH_FLOW_MOVING && action != WH_FLOW_WAITING);
+        found = action != WH_FLOW_IDLE && action != WH_FLOW_MOVING && action != WH_FLOW_WAITING;
     }
     return found;
 }
@@ -47,14 +47,14 @@ static bool is_planned(const wh_flow_state_t *state) {
 
 /* True if something ends or comes without a robot: a process, a clean, what is planned. */
 static bool is_any_to_come(const wh_flow_state_t *state) {
-    bool found = wh_flow_is_real_busy(state) || is_planned(state);
-    for (size_t i = 0; i < state->tool->station_count; ++i) {
-        found = found || is_any_in(state, &state->stations[i]);
+    bool found = false;
+    for (size_t i = 0; i < state->tool->station_count && !found; ++i) {
+        found = is_any_in(state, &state->stations[i]);
     }
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        found = found || is_ahead(state, state->robots[r].held_us);
+    for (size_t r = 0; r < state->tool->robot_count && !found; ++r) {
+        found = is_ahead(state, state->robots[r].held_us);
     }
-    return found;
+    return found || wh_flow_is_real_busy(state) || is_planned(state);
 }
 
 static int64_t left(const wh_flow_state_t *state, int64_t us) {

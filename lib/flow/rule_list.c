@@ -106,6 +106,12 @@ static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_fl
     return false;
 }
 
+/* True also if it was possible when it was asked last, and no wafer has gone anywhere since. */
+static bool stays_possible(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
+                           bool is_known) {
+    return is_known || is_possible(state, robot, line);
+}
+
 static bool has_no_arm(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     return at->arms[0] != WH_FLOW_NONE &&
@@ -124,7 +130,7 @@ static void order_swap(const wh_flow_state_t *state, const wh_flow_line_t *line,
 }
 
 const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
-                               wh_flow_order_t *order) {
+                               bool is_known, wh_flow_order_t *order) {
     *order = (wh_flow_order_t){.what = line->what,
                                .wafer = WH_FLOW_NONE,
                                .at = line->from,
@@ -146,7 +152,7 @@ const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, cons
     }
     if (line->what != WH_FLOW_PUMP) {
         order->wafer = wafer_in(state, robot, line);
-        if (order->wafer == WH_FLOW_NONE && !is_possible(state, robot, line)) {
+        if (order->wafer == WH_FLOW_NONE && !stays_possible(state, robot, line, is_known)) {
             return "no wafer lies there, or will, whose next step it serves";
         }
         if (has_no_arm(state, robot)) {
@@ -158,13 +164,19 @@ const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, cons
 
 bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order) {
     const wh_flow_list_t *list = &state->plan->lists[robot];
-    const int32_t number = state->robots[robot].mark;
+    wh_flow_robot_state_t *at = &state->robots[robot];
+    const int32_t number = at->mark;
     if ((size_t)number >= list->count) {
         return false;
     }
     const wh_flow_line_t *line = &list->lines[number];
-    const char *why = wh_flow_order_line(state, robot, line, order);
+    const bool is_known = at->possible == number && at->possible_at == state->changes;
+    const char *why = wh_flow_order_line(state, robot, line, is_known, order);
     order->mark = number + 1;
+    if (!why) {
+        at->possible = number;
+        at->possible_at = state->changes;
+    }
     if (!why && order->what != WH_FLOW_PUMP && line->behind > state->stations[order->at].accesses) {
         order->what = WH_FLOW_KEEP; /* it goes there, and waits for those before it */
         order->wafer = order->place = WH_FLOW_NONE;

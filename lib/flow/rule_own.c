@@ -47,7 +47,7 @@ bool wh_flow_ask_own(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *ord
     for (int i = 0; i < count; ++i) {
         const bool is_its =
             is_served(state->tool, robot, lines[i].from) && is_served(state->tool, robot, lines[i].to);
-        const char *why = is_its ? wh_flow_order_line(state, robot, &lines[i], &orders[i])
+        const char *why = is_its ? wh_flow_order_line(state, robot, &lines[i], false, &orders[i])
                                  : "the robot does not serve that station";
         if (why) {
             return refuse(state, robot, &lines[i], why);

@@ -50,8 +50,9 @@ int32_t wh_flow_find_safe_place(const wh_flow_state_t *state, int32_t robot, int
 bool wh_flow_is_outranked(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
                           wh_flow_find_place_t find);
 
-/* Fills the order that carries out a line. Null, or why the line can never be carried out. */
+/* Fills the order that carries out a line. Null, or why the line can never be carried out; `is_known`: it
+ * could be, and no wafer has gone anywhere since. */
 const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
-                               wh_flow_order_t *order);
+                               bool is_known, wh_flow_order_t *order);
 
 #endif

@@ -13,6 +13,7 @@ static int64_t idle_of(const wh_flow_station_t *station) {
 
 static void open_stations(wh_flow_state_t *state) {
     const wh_flow_tool_t *tool = state->tool;
+    state->calls.are_there = state->plan->call_count > 0;
     for (size_t i = 0; i < tool->place_count; ++i) {
         const int64_t idle_us = idle_of(&tool->stations[tool->place_stations[i]]);
         state->places[i] = (wh_flow_place_t){
@@ -30,6 +31,7 @@ static void open_stations(wh_flow_state_t *state) {
             .side = tool->stations[i].side,
             .acts = tool->stations[i].is_lock || wh_flow_is_cleaned(&tool->stations[i]),
             .real = {.shutter = WH_FLOW_NONE, .work_wafer = WH_FLOW_NONE, .closed_us = -1}};
+        state->calls.are_there = state->calls.are_there || tool->stations[i].has_carriers;
     }
 }
 
@@ -40,6 +42,7 @@ static void open_robots(wh_flow_state_t *state) {
                                                    .station = state->tool->robots[i].at,
                                                    .from = WH_FLOW_NONE,
                                                    .to = WH_FLOW_NONE,
+                                                   .possible = WH_FLOW_NONE,
                                                    .arms = {WH_FLOW_NONE, WH_FLOW_NONE}};
         for (size_t k = 0; plan->lists && k < plan->lists[i].count; ++k) {
             if (plan->lists[i].lines[k].what == WH_FLOW_PUMP) {
@@ -107,6 +110,7 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 
 void wh_flow_note_over(wh_flow_state_t *state) {
     ++state->over;
+    ++state->changes;
     while (state->first_open < (int32_t)state->plan->wafer_count &&
            state->wafers[state->first_open].is_over) {
         ++state->first_open;

@@ -124,7 +124,9 @@ typedef struct {
     int32_t from, to, arm;         /* of the transfer: places, and the arm in use */
     int32_t arms[2];               /* wafers, or WH_FLOW_NONE */
     int64_t kept_us[2];
-    int32_t mark;         /* backward: where the round goes on; lists: the next line */
+    int32_t mark;     /* backward: where the round goes on; lists: the next line */
+    int32_t possible; /* lists: the line of which it is known that it can be carried out, or WH_FLOW_NONE */
+    uint64_t possible_at; /* the state's changes then */
     wh_flow_order_t wish; /* the first answer of the rule when it was asked last */
     bool has_wish;
     int64_t held_us, held_began_us; /* until then, and since when, it begins nothing; 0: it is not held */
@@ -209,6 +211,7 @@ typedef struct {
     wh_flow_call_state_t *of; /* by call */
     bool *has_come;           /* by lot */
     size_t skipped;           /* wafers that were left where they lie */
+    bool are_there;           /* some station is one to which carriers come, or one calls */
 } wh_flow_calls_t;
 
 typedef struct wh_flow_state {

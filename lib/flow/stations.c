@@ -414,8 +414,10 @@ int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
     const wh_flow_plan_t *plan = state->plan;
     const int64_t now_us = state->now_us;
     int64_t next_us = WH_FLOW_FOR_EVER, idle = WH_FLOW_FOR_EVER;
-    for (size_t i = 0; i < state->tool->station_count; ++i) {
-        const bool is_known = !state->outside && state->stations[i].next_us > now_us;
+    const size_t count = state->tool->station_count;
+    const bool are_kept = !state->outside;
+    for (size_t i = 0; i < count; ++i) {
+        const bool is_known = are_kept && state->stations[i].next_us > now_us;
         const int64_t its_us = is_known ? state->stations[i].next_us : station_next(state, i);
         next_us = its_us < next_us ? its_us : next_us;
         if (state->stations[i].acts && !state->tool->stations[i].is_real) {
