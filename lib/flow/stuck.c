@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "calls.h"
 #include "failed.h"
 #include "flow.h"
 #include "safe.h"
@@ -90,6 +91,9 @@ static void say_pressure(const wh_flow_state_t *state, int32_t wafer, int32_t st
 static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text) {
     if (state->stations[station].down_us != WH_FLOW_NEVER) {
         say(text, " (down for ever)");
+    }
+    if (wh_flow_is_port_shut(state, station)) {
+        say(text, " (no carrier is open there)");
     }
 }
 

@@ -103,7 +103,8 @@ static wh_figure_t judge_rate(const wh_record_t *record, const wh_throughput_t *
     const bool stands[] = {[WH_FIGURE_PARTIAL] = record->is_partial,
                            [WH_FIGURE_UNTOLD] = record->is_untold,
                            [WH_FIGURE_FAILED] = !record->ok,
-                           [WH_FIGURE_ALONE] = record->layout->timed && (record->flow || record->log),
+                           [WH_FIGURE_ALONE] = (record->layout->timed && (record->flow || record->log)) ||
+                                               (record->layout->tool && record->flow),
                            [WH_FIGURE_NO_TIME] = throughput->slices == 0,
                            [WH_FIGURE_NOWHERE] = !counts_anywhere(record->layout),
                            [WH_FIGURE_NO_WAFER] = throughput->wafers == 0,
