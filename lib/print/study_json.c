@@ -116,9 +116,9 @@ static json_t *figure(const wh_study_result_t *result, wh_flow_sum_t which) {
 
 static json_t *flow(const wh_study_result_t *result) {
     const wh_flow_sums_t *flow = result->tally->flow;
-    json_t *object =
-        wh_json_set(json_object(), "unfinished %lld unsteady %lld no_cycle %lld",
-                    (json_int_t)flow->unfinished, (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle);
+    json_t *object = wh_json_set(json_object(), "unfinished %lld unsteady %lld no_cycle %lld clipped %lld",
+                                 (json_int_t)flow->unfinished, (json_int_t)flow->unsteady,
+                                 (json_int_t)flow->no_cycle, (json_int_t)flow->clipped);
     for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
         wh_json_put(object, wh_flow_sum_names[i],
                     flow->of[i].count > 0 ? figure(result, (wh_flow_sum_t)i) : json_null());

@@ -23,10 +23,11 @@
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
  *   flow:         of a script with a flow: unfinished (trials whose flow did not come to its end with all
  *                 wafers: without a makespan), unsteady (whose cycle is the mean over the middle third of the
- *                 wafers), no_cycle (with fewer than nine wafers: without one), and makespan_s, cycle_s,
- *                 per_hour, robots_wait_s and wafers_wait_s (all of them together; of wafers that are done),
- *                 late_stays (their number, beyond windows; each null: no trial has it): { without_errors,
- *                 count, mean, deviation, min, p0_1, ..., max }
+ *                 wafers), no_cycle (with fewer than nine wafers: without one), clipped (that drew a
+ *                 process shorter than 0 s, which took none), and makespan_s, cycle_s, per_hour,
+ *                 robots_wait_s and wafers_wait_s (all of them together; of wafers that are done), late_stays
+ *                 (their number, beyond windows; each null: no trial has it): { without_errors, count, mean,
+ *                 deviation, min, p0_1, ..., max }
  *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with
  *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam,
  *                 process), of (a name;

@@ -220,6 +220,8 @@ static void print_flow(const table_t *table) {
     print_left_out(table, flow->no_cycle,
                    "the trials has too few wafers for a cycle, and is in neither it nor the rate",
                    "the trials have too few wafers for a cycle, and are in neither it nor the rate");
+    print_left_out(table, flow->clipped, "the trials drew a process shorter than 0 s, which took none",
+                   "the trials drew a process shorter than 0 s, which took none");
 }
 
 /* ------------------------------------------------------------------------------------------------- causes */

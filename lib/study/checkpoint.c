@@ -12,7 +12,7 @@
 #include "../text/output.h"
 #include "identity.h"
 
-#define FORMAT 8
+#define FORMAT 9
 /* The first byte of a state. */
 #define BEGIN '{'
 /* The check stands behind all bytes that it covers: `,"check":"0123456789abcdef"}`. */
@@ -224,12 +224,16 @@ static json_t *put_lines(const wh_trial_lines_t *lines) {
     return made;
 }
 
+/* The counts of a flow's trials, which stand before its sums. */
+#define FLOW_COUNTS 5
+
 static json_t *put_flow(const wh_flow_sums_t *flow) {
     if (!flow) {
         return json_null();
     }
-    json_t *list = json_pack("[I, I, I, I]", (json_int_t)flow->trials, (json_int_t)flow->unfinished,
-                             (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle);
+    json_t *list =
+        json_pack("[I, I, I, I, I]", (json_int_t)flow->trials, (json_int_t)flow->unfinished,
+                  (json_int_t)flow->unsteady, (json_int_t)flow->no_cycle, (json_int_t)flow->clipped);
     for (size_t f = 0; f < WH_FLOW_SUM_FIGURES; ++f) {
         wh_json_append(list, put_sum(&flow->of[f]));
     }
@@ -246,7 +250,7 @@ static bool are_waits_possible(const wh_flow_sums_t *flow) {
 /* True if so many trials can have these counts. */
 static bool is_flow_possible(const wh_flow_sums_t *flow, uint64_t trials) {
     return flow->trials == trials && flow->unfinished <= trials && flow->no_cycle <= trials &&
-           flow->unsteady <= trials - flow->no_cycle &&
+           flow->clipped <= trials && flow->unsteady <= trials - flow->no_cycle &&
            flow->of[WH_FLOW_SUM_MAKESPAN].count == trials - flow->unfinished &&
            flow->of[WH_FLOW_SUM_CYCLE].count == trials - flow->no_cycle &&
            flow->of[WH_FLOW_SUM_PER_HOUR].count == trials - flow->no_cycle && are_waits_possible(flow);
@@ -257,13 +261,14 @@ static bool take_flow(const wh_study_t *study, const json_t *list, wh_tally_t *t
         return json_is_null(list);
     }
     wh_flow_sums_t *flow = wh_tally_need_flow(tally);
-    bool sound = json_array_size(list) == 4 + WH_FLOW_SUM_FIGURES &&
-                 take_count(json_array_get(list, 0), &flow->trials) &&
-                 take_count(json_array_get(list, 1), &flow->unfinished) &&
-                 take_count(json_array_get(list, 2), &flow->unsteady) &&
-                 take_count(json_array_get(list, 3), &flow->no_cycle);
+    uint64_t *const counts[FLOW_COUNTS] = {&flow->trials, &flow->unfinished, &flow->unsteady, &flow->no_cycle,
+                                           &flow->clipped};
+    bool sound = json_array_size(list) == FLOW_COUNTS + WH_FLOW_SUM_FIGURES;
+    for (size_t i = 0; sound && i < FLOW_COUNTS; ++i) {
+        sound = take_count(json_array_get(list, i), counts[i]);
+    }
     for (size_t i = 0; sound && i < WH_FLOW_SUM_FIGURES; ++i) {
-        sound = take_sum(json_array_get(list, 4 + i), &flow->of[i]);
+        sound = take_sum(json_array_get(list, FLOW_COUNTS + i), &flow->of[i]);
     }
     return sound && is_flow_possible(flow, tally->trials);
 }

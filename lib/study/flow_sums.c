@@ -51,12 +51,39 @@ bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES
     return result->period > 0;
 }
 
+/* How long the process would be: a station of times alone has taken over what was drawn, and cut it off. */
+static bool is_clipped(const wh_flow_step_t *step, const wh_flow_station_t *station, int32_t recipe,
+                       int64_t drawn_us) {
+    const int64_t us = wh_flow_step_us(step, station, recipe);
+    return us > 0 && (station->off_us != 0 ? us <= 1 : us + drawn_us < 1);
+}
+
+bool wh_flow_sums_clips(const wh_flow_t *flow, size_t station, double drawn_s) {
+    if (!flow || !flow->figures.tool || station >= flow->tool->station_count || !(drawn_s < 0)) {
+        return false;
+    }
+    const wh_flow_station_t *of = &flow->tool->stations[station];
+    for (int32_t w = 0; w < (int32_t)flow->plan.wafer_count; ++w) {
+        const int32_t last = wh_flow_last_step(&flow->plan, w);
+        for (int32_t k = 1; k <= last; ++k) {
+            const wh_flow_step_t *step = wh_flow_step_of(&flow->plan, w, k);
+            if (wh_flow_step_has(step, (int32_t)station) &&
+                is_clipped(step, of, wh_flow_recipe_of(&flow->plan, w, k), llround(1e6 * drawn_s))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 double wh_flow_sums_aside(const double figures[], const double without[], wh_flow_sum_t figure) {
     return (figures[figure] - without_of(without, figure)) / WH_FLOW_SUM_SCALE;
 }
 
-void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady) {
+void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady,
+                      bool is_clipped_once) {
     ++sums->trials;
+    sums->clipped += is_clipped_once ? 1 : 0;
     sums->unfinished += isnan(figures[WH_FLOW_SUM_MAKESPAN]) ? 1 : 0;
     sums->no_cycle += isnan(figures[WH_FLOW_SUM_CYCLE]) ? 1 : 0;
     sums->unsteady += !isnan(figures[WH_FLOW_SUM_CYCLE]) && !is_steady ? 1 : 0;
@@ -72,6 +99,7 @@ void wh_flow_sums_merge(wh_flow_sums_t *sums, const wh_flow_sums_t *other) {
     sums->unfinished += other->unfinished;
     sums->unsteady += other->unsteady;
     sums->no_cycle += other->no_cycle;
+    sums->clipped += other->clipped;
     for (int i = 0; i < WH_FLOW_SUM_FIGURES; ++i) {
         wh_sum_merge(&sums->of[i], &other->of[i]);
     }

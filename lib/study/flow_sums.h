@@ -35,6 +35,7 @@ typedef struct {
     uint64_t unfinished; /* of them: the flow was stuck, broken or cut, or lost wafers; without a makespan */
     uint64_t unsteady;   /* of them: the cycle is a mean, for ends do not repeat */
     uint64_t no_cycle;   /* of them: too few wafers, or no good end; without cycle and rate */
+    uint64_t clipped;    /* of them: a process was drawn shorter than 0 s, and took 1 us */
     wh_sum_t of[WH_FLOW_SUM_FIGURES];
 } wh_flow_sums_t;
 
@@ -45,11 +46,16 @@ typedef struct {
  * no flow was played, and all are NaN. True if the cycle is a steady one. */
 bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES]);
 
+/* True if a wafer of the flow may meet a process of the station that would be shorter than 0 s, by what the
+ * trial has drawn. */
+bool wh_flow_sums_clips(const wh_flow_t *flow, size_t station, double drawn_s);
+
 /* How far a trial's figure is from that of the run without errors, as it is summed. */
 double wh_flow_sums_aside(const double figures[], const double without[], wh_flow_sum_t figure);
 
 /* Adds a trial's figures; `without` are those of the run without errors, of which a NaN counts as 0. */
-void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady);
+void wh_flow_sums_add(wh_flow_sums_t *sums, const double figures[], const double without[], bool is_steady,
+                      bool is_clipped_once);
 void wh_flow_sums_merge(wh_flow_sums_t *sums, const wh_flow_sums_t *other);
 
 /* The figures of sum.h, in the figure's own unit. */

@@ -357,6 +357,15 @@ static void add_line(wh_tally_t *tally, const wh_study_t *study, const wh_outcom
     }
 }
 
+static bool is_any_clipped(const wh_study_t *study, const wh_flow_t *flow, const double drawn[]) {
+    bool is_any = false;
+    for (size_t i = 0; i < study->cause_count; ++i) {
+        is_any = is_any || (study->causes[i].kind == WH_CAUSE_PROCESS &&
+                            wh_flow_sums_clips(flow, study->causes[i].index, drawn[i]));
+    }
+    return is_any;
+}
+
 void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome) {
     const wh_record_t *record = outcome->record;
     wh_trial_line_t line = {.trial = outcome->trial,
@@ -378,7 +387,8 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
     wh_relations_add(&tally->relations, !line.met);
     add_wafers(tally, study, outcome, &line);
     if (study->has_flow) {
-        wh_flow_sums_add(wh_tally_need_flow(tally), line.flow, study->flow, is_steady);
+        wh_flow_sums_add(wh_tally_need_flow(tally), line.flow, study->flow, is_steady,
+                         is_any_clipped(study, record->flow, tally->relations.drawn));
         relate_flow(tally, study, line.flow);
     }
     count_troubles(outcome, &line);

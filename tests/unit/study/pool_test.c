@@ -238,7 +238,7 @@ static void only_possible_states_are_read(void **state) {
     static const struct {
         const char *from, *to, *says;
     } changes[] = {
-        {"\"format\":8,", "\"format\":7,", "of another version: its format is 7 (expected 8)"},
+        {"\"format\":9,", "\"format\":8,", "of another version: its format is 8 (expected 9)"},
         {"\"trials\":9,\"met\":", "\"trials\":9,\"whole\":", "damaged (expected a study's state)"},
         {"\"met\":9", "\"met\":8", NULL},
         {"\"met\":9", "\"met\":99", "damaged (expected a study's state)"},
