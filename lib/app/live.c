@@ -10,13 +10,14 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "../report/page.h"
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "../view/http.h"
 #include "connection.h"
 #include "live_browser.h"
+#include "live_files.h"
 #include "live_kept.h"
+#include "live_news.h"
 #include "live_pace.h"
 
 /* A look at least so long after the one before, and what is told that may wait, us. */
@@ -26,14 +27,13 @@
 /* Room for an entry of a port in its written form. */
 #define FRAME_BYTES 2000
 
-/* The files of the page. */
-enum { FILE_PAGE, FILE_SCRIPTS, FILE_STYLE, FILE_FOREIGN, FILES };
-
 struct wh_live {
     wh_live_options_t options;
     wh_mcs_listener_t next;
     wh_live_control_t control;
-    wh_live_pace_t pace;   /* the stepping thread's */
+    wh_live_pace_t pace;        /* the stepping thread's */
+    void (*attend)(void *user); /* likewise; null: nobody commands it */
+    void *attend_user;
     wh_showing_t *showing; /* null: no cell. The stepping thread changes it, with the lock */
     pthread_t thread;
     int wake;             /* ends a wait of the page's thread */
@@ -43,8 +43,7 @@ struct wh_live {
     wh_feed_t feed;
     wh_http_t *http;
     char id[40];
-    wh_http_file_t files[FILES];
-    char *texts[FILES];         /* theirs */
+    wh_live_files_t files;
     int64_t looked_us, told_us; /* by the wall clock */
     wh_live_meter_t meter;
 };
@@ -55,7 +54,9 @@ const wh_option_t wh_live_options[] = {
      "given (default 127.0.0.1:8765)",
      WH_OPTION_ADDRESS, .variable = offsetof(wh_live_arguments_t, address)},
     {"page-control", 0, NULL,
-     "With --page: let who has the token that is printed pause, step and pace a run, or test a served cell",
+     "With --page: let who has the token that is printed pause, step and pace a run, command a prompt's "
+     "cell, or test a "
+     "served one",
      WH_OPTION_FLAG, .variable = offsetof(wh_live_arguments_t, controls)},
     {"open", 0, NULL, "With --page: open it in the browser", WH_OPTION_FLAG,
      .variable = offsetof(wh_live_arguments_t, opens)},
@@ -71,19 +72,22 @@ void wh_live_check(const void *filled, struct argp_state *state) {
 /* -------------------------------------------------------------------------------------- the page's thread */
 
 static wh_live_state_t state_of(const wh_live_t *live) {
-    static const char *const controlled[] = {NULL, "run", "tester"};
+    static const char *const controlled[] = {NULL, "run", "tester", "prompt"};
     const wh_live_control_t *control = &live->control;
     return (wh_live_state_t){.title = live->options.title,
                              .reproduce = live->options.reproduce,
                              .id = live->id,
-                             .rate = control->controlled == WH_LIVE_RUN
+                             .rate = control->controlled != WH_LIVE_NO_CONTROL && control->paces
                                          ? (double)__atomic_load_n(&control->rate_ppm, __ATOMIC_RELAXED) / 1e6
                                          : live->options.rate,
                              .pace = live->meter.pace,
                              .control = controlled[control->controlled],
-                             .lists_faults = control->controlled == WH_LIVE_TESTER,
+                             .lists_faults = control->controlled == WH_LIVE_TESTER ||
+                                             control->controlled == WH_LIVE_PROMPT,
                              .lists_robots = control->controlled == WH_LIVE_RUN,
-                             .is_paused = __atomic_load_n(&control->is_paused, __ATOMIC_RELAXED)};
+                             .paces = control->paces,
+                             .is_paused = __atomic_load_n(&control->is_paused, __ATOMIC_RELAXED),
+                             .stands = __atomic_load_n(&control->stands, __ATOMIC_ACQUIRE)};
 }
 
 static void tell_growth(wh_live_t *live) {
@@ -109,7 +113,11 @@ static void take_all(wh_live_t *live) {
     wh_news_t *news = wh_showing_take_news(live->showing);
     while (news) {
         wh_news_t *next = news->next;
-        wh_live_kept_news(&live->kept, news);
+        if (news->kind == WH_NEWS_ANSWER) {
+            wh_feed_add(&live->feed, "answer", news->text);
+        } else {
+            wh_live_kept_news(&live->kept, news);
+        }
         wh_news_free(news);
         news = next;
     }
@@ -180,7 +188,7 @@ static void *serve(void *user) {
         wh_http_wait(live->http, LOOK_US, live->wake);
         pthread_mutex_lock(&live->lock);
         look(live);
-        wh_live_control_drain(&live->control);
+        wh_live_tester_drain(&live->control.tester);
         wh_http_serve(live->http);
         pthread_mutex_unlock(&live->lock);
     }
@@ -203,6 +211,15 @@ static void begin(void *user, const wh_layout_t *layout) {
     wh_live_pace_begin(&live->pace);
 }
 
+/* While nothing moves, or may move. */
+static void idle(void *user) {
+    const wh_live_t *live = user;
+    wh_live_rest(user);
+    if (live->attend) {
+        live->attend(live->attend_user);
+    }
+}
+
 static void take_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     wh_live_t *live = user;
     if (live->next.slice) {
@@ -211,9 +228,23 @@ static void take_slice(void *user, const wh_command_t *command, const wh_state_t
     if (live->showing) {
         wh_showing_slice(live->showing, command, state);
     }
-    if (live->options.paces && state->status == WH_OK) {
-        wh_live_control_slice(&live->control, &live->pace, state->utime, wh_live_rest, live);
+    if (live->attend && wh_live_lines_wait(&live->control.lines)) {
+        live->attend(live->attend_user);
     }
+    if (live->control.paces && state->status == WH_OK) {
+        wh_live_control_slice(&live->control, &live->pace, state->utime, idle, live);
+    }
+}
+
+static void set_back(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_live_t *live = user;
+    if (live->next.set_back) {
+        live->next.set_back(live->next.user, command, state);
+    }
+    if (live->showing) {
+        wh_showing_set_back(live->showing, command, state);
+    }
+    wh_live_pace_begin(&live->pace);
 }
 
 static void rest(void *user, const wh_layout_t *layout) {
@@ -231,87 +262,19 @@ void wh_live_rest(void *user) {
     }
 }
 
-static wh_news_t *news_of_command(const wh_mcs_t *mcs, wh_mcs_news_t what,
-                                  const wh_command_record_t *command) {
-    wh_news_t *news =
-        wh_news_make(what == WH_MCS_COMMAND_BEGINS ? WH_NEWS_COMMAND_BEGINS : WH_NEWS_COMMAND_ENDED,
-                     wh_mcs_utime(mcs), command->text, command->message);
-    news->task = command->task;
-    news->line = command->line;
-    news->begin_s = command->begin_s;
-    news->end_s = command->end_s;
-    news->error = command->error;
-    return news;
-}
-
-static wh_news_t *news_of_expectation(const wh_mcs_t *mcs) {
-    const wh_record_t *record = wh_mcs_record(mcs);
-    const wh_expectation_record_t *last = &record->expectations[record->expectation_count - 1];
-    wh_news_t *news = wh_news_make(WH_NEWS_EXPECTED, wh_mcs_utime(mcs), last->text, NULL);
-    news->line = last->line;
-    news->good = last->ok;
-    return news;
-}
-
-static wh_news_t *news_of_station(const wh_mcs_t *mcs) {
-    const wh_record_t *record = wh_mcs_record(mcs);
-    wh_news_t *news = wh_news_make(WH_NEWS_STATION, wh_mcs_utime(mcs), NULL, NULL);
-    news->station = record->station_events[record->station_event_count - 1];
-    return news;
-}
-
-static wh_news_t *news_of_end(const wh_mcs_t *mcs) {
-    const wh_record_t *record = wh_mcs_record(mcs);
-    char reason[1000] = "";
-    if (!record->ok) {
-        wh_record_reason(record, reason, sizeof reason);
-    }
-    wh_news_t *news = wh_news_make(WH_NEWS_ENDED, wh_mcs_utime(mcs), record->ok ? NULL : reason, NULL);
-    news->good = record->ok;
-    return news;
-}
-
-static wh_news_t *news_of_hold(const wh_mcs_t *mcs, bool is_held) {
-    char robots[WH_MCS_HOLD_BYTES];
-    wh_mcs_name_held(mcs, robots);
-    wh_news_t *news = wh_news_make(WH_NEWS_HELD, wh_mcs_utime(mcs), robots, NULL);
-    news->good = is_held;
-    return news;
-}
-
-/* Null for what the page does not show. */
-static wh_news_t *news_of(const wh_mcs_t *mcs, wh_mcs_news_t what, const wh_command_record_t *command) {
-    switch ((int)what) {
-    case WH_MCS_COMMAND_BEGINS:
-    case WH_MCS_COMMAND_ENDED:
-        return news_of_command(mcs, what, command);
-    case WH_MCS_EXPECTED:
-        return news_of_expectation(mcs);
-    case WH_MCS_STATION_TOLD:
-        return news_of_station(mcs);
-    case WH_MCS_HELD:
-    case WH_MCS_NOT_HELD:
-        return news_of_hold(mcs, what == WH_MCS_HELD);
-    case WH_MCS_FINISHED:
-        return news_of_end(mcs);
-    default:
-        return NULL;
-    }
-}
-
 static void hear_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t what,
                       const wh_command_record_t *command) {
     wh_live_t *live = user;
     if (live->next.tell) {
         live->next.tell(live->next.user, mcs, what, command);
     }
-    wh_news_t *news = live->showing ? news_of(mcs, what, command) : NULL;
+    wh_news_t *news = live->showing ? wh_live_news_of(mcs, what, command) : NULL;
     if (news) {
         wh_showing_rest(live->showing);
         wh_showing_tell(live->showing, news);
     }
     if (what == WH_MCS_COMMAND_ENDED) {
-        wh_live_control_command(&live->control, wh_live_rest, live);
+        wh_live_control_command(&live->control, idle, live);
     }
 }
 
@@ -321,9 +284,7 @@ static void hear_turn(void *user, const wh_mcs_t *mcs, const char *what) {
         live->next.turn(live->next.user, mcs, what);
     }
     if (live->showing) {
-        wh_news_t *news = wh_news_make(what ? WH_NEWS_WAITS : WH_NEWS_GOES_ON, wh_mcs_utime(mcs), what, NULL);
-        news->task = wh_mcs_task(mcs);
-        wh_showing_tell(live->showing, news);
+        wh_showing_tell(live->showing, wh_live_news_of_turn(mcs, what));
     }
 }
 
@@ -353,6 +314,7 @@ wh_mcs_listener_t wh_live_listener(wh_live_t *live, const wh_mcs_listener_t *nex
     return (wh_mcs_listener_t){.slice = take_slice,
                                .boundary = rest,
                                .begins = begin,
+                               .set_back = set_back,
                                .tell = hear_news,
                                .turn = hear_turn,
                                .flow_slice = take_holds,
@@ -373,6 +335,31 @@ void wh_live_heard(void *user, const wh_transcript_entry_t *entry) {
     }
 }
 
+void wh_live_set_attendant(wh_live_t *live, void (*attend)(void *user), void *user) {
+    if (live) {
+        live->attend = attend;
+        live->attend_user = user;
+    }
+}
+
+int wh_live_descriptor(const wh_live_t *live) {
+    return live ? live->control.lines.wake : -1;
+}
+
+bool wh_live_take_line(wh_live_t *live, wh_live_line_t *line) {
+    return live && wh_live_lines_take(&live->control.lines, line);
+}
+
+bool wh_live_has_asked(const wh_live_t *live, int64_t number) {
+    return live && number > live->control.base && number - live->control.base < WH_LIVE_NUMBERS;
+}
+
+void wh_live_go_on(wh_live_t *live) {
+    if (live) {
+        wh_live_control_go_on(&live->control);
+    }
+}
+
 bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout) {
     if (!live || !layout->tool) {
         return true;
@@ -385,36 +372,10 @@ bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-/* The page's files, each with its template. */
-static const struct {
-    const char *path, *type, *name;
-} files[FILES] = {
-    [FILE_PAGE] = {"/", "text/html; charset=utf-8", WH_PAGE_LIVE},
-    [FILE_SCRIPTS] = {"/page.js", "text/javascript; charset=utf-8", WH_PAGE_SCRIPTS},
-    [FILE_STYLE] = {"/page.css", "text/css; charset=utf-8", WH_PAGE_STYLE},
-    [FILE_FOREIGN] = {"/foreign.js", "text/javascript; charset=utf-8", WH_PAGE_FOREIGN},
-};
-
-static bool make_files(wh_live_t *live) {
-    char message[WH_PAGE_MESSAGE_BYTES] = "";
-    bool made = true;
-    for (size_t i = 0; made && i < FILES; ++i) {
-        size_t size = 0;
-        FILE *out = wh_memory_need(open_memstream(&live->texts[i], &size));
-        made = wh_page_write(out, files[i].name, live->options.title, "", 0, message);
-        (void)fclose(out);
-        live->files[i] = (wh_http_file_t){files[i].path, files[i].type, wh_memory_need(live->texts[i]), size};
-    }
-    if (!made) {
-        (void)fprintf(stderr, "--page: %s\n", message);
-    }
-    return made;
-}
-
 static bool open_server(wh_live_t *live, const char *address) {
     char problem[WH_HTTP_PROBLEM_BYTES];
-    const wh_http_source_t source = {.files = live->files,
-                                     .file_count = FILES,
+    const wh_http_source_t source = {.files = live->files.files,
+                                     .file_count = WH_LIVE_FILES,
                                      .feed = &live->feed,
                                      .id = live->id,
                                      .document = make_document,
@@ -448,9 +409,7 @@ static void free_live(wh_live_t *live) {
     wh_showing_close(live->showing);
     wh_live_kept_begin(&live->kept, NULL);
     wh_feed_close(&live->feed);
-    for (size_t i = 0; i < FILES; ++i) {
-        free(live->texts[i]);
-    }
+    wh_live_files_free(&live->files);
     if (live->wake >= 0) {
         (void)close(live->wake);
     }
@@ -466,7 +425,7 @@ static bool open_control(wh_live_t *live, const wh_live_arguments_t *arguments) 
         (void)fprintf(stderr, "--page-control: %s\n", options->uncontrolled);
         return false;
     }
-    if (!wh_live_control_begin(&live->control, controlled, options->rate)) {
+    if (!wh_live_control_begin(&live->control, controlled, options->paces, options->rate)) {
         (void)fprintf(stderr, "--page-control: no token: %s\n", strerror(errno));
         return false;
     }
@@ -476,7 +435,7 @@ static bool open_control(wh_live_t *live, const wh_live_arguments_t *arguments) 
 void wh_live_set_tester(wh_live_t *live, const char *address) {
     if (live) {
         pthread_mutex_lock(&live->lock);
-        (void)snprintf(live->control.tester, sizeof live->control.tester, "%s", address);
+        (void)snprintf(live->control.tester.address, sizeof live->control.tester.address, "%s", address);
         pthread_mutex_unlock(&live->lock);
     }
 }
@@ -502,12 +461,14 @@ bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const 
     wh_live_t *live = wh_array_new(1, sizeof *live);
     live->options = *options;
     live->meter.pace = -1;
+    live->control.lines.wake = -1;
     (void)snprintf(live->id, sizeof live->id, "%" PRIx64 "-%x", (uint64_t)wh_clock_us(CLOCK_REALTIME),
                    (unsigned)getpid());
     live->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     (void)pthread_mutex_init(&live->lock, NULL);
-    if (live->wake < 0 || !open_control(live, arguments) || !make_files(live) ||
-        !open_server(live, arguments->address) || !start(live)) {
+    if (live->wake < 0 || !open_control(live, arguments) ||
+        !wh_live_files_make(&live->files, live->options.title) || !open_server(live, arguments->address) ||
+        !start(live)) {
         free_live(live);
         return false;
     }

@@ -36,6 +36,9 @@ typedef struct {
     bool paces;                      /* slices wait for that rate here; otherwise somebody else sees to it */
 } wh_live_options_t;
 
+/* The most requests of a page. */
+#define WH_LIVE_NUMBERS (1LL << 40)
+
 /* An open page; null where none is wanted, which every function takes. */
 typedef struct wh_live wh_live_t;
 
@@ -54,6 +57,22 @@ void wh_live_heard(void *user, const wh_transcript_entry_t *entry);
 
 /* Nothing moves for now: what moved last is shown. `user` is the wh_live_t. The stepping thread's. */
 void wh_live_rest(void *user);
+
+/* A page that commands a prompt: all of these are the stepping thread's. `attend` is called when lines wait
+ * while slices are played, and each 2 ms of a pause; it must not execute commands. */
+void wh_live_set_attendant(wh_live_t *live, void (*attend)(void *user), void *user);
+
+/* A descriptor that can be read when a line has come; -1: none comes. */
+int wh_live_descriptor(const wh_live_t *live);
+
+/* Takes the next line that has come; false: there is none. */
+bool wh_live_take_line(wh_live_t *live, wh_live_line_t *line);
+
+/* True if a request with this number is a page's. */
+bool wh_live_has_asked(const wh_live_t *live, int64_t number);
+
+/* Ends a pause. */
+void wh_live_go_on(wh_live_t *live);
 
 /* The tester's port, once it listens, where a page commands that. */
 void wh_live_set_tester(wh_live_t *live, const char *address);

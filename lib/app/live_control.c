@@ -1,13 +1,11 @@
 #include "live_control.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/random.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include "../host/address.h"
+#include "../mcs/session.h"
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "../text/json.h"
@@ -18,115 +16,84 @@
 #define LEAST_RATE 0.001
 #define MOST_RATE 1000.0
 #define MOST_SLICES 1000000
-#define MOST_LINE 1000
 
-#define EXPECTED "expected token and one of pause, slices, command, rate, line, hold, continue"
+/* Numbers of requests are drawn, because other testers count theirs from 1 on, and other operators draw
+ * theirs; a page's number is a double. */
+#define TESTERS_BASE 1000000000LL
+#define OPERATORS_BASE (1LL << 52)
+
+#define EXPECTED "expected token and one of pause, slices, command, rate, line, complete, hold, continue"
 
 enum { OK = 200, ACCEPTED = 202, BAD = 400, FORBIDDEN = 403, UNAVAILABLE = 503 };
 
 /* ------------------------------------------------------------------------------------ the stepping thread */
 
 /* Waits while it is paused and no slice may pass. */
-static void hold(wh_live_control_t *control, void (*rest)(void *user), void *user) {
+static void hold(wh_live_control_t *control, void (*idle)(void *user), void *user) {
     const struct timespec a_while = {0, PAUSED_US * 1000L};
-    rest(user);
-    while (__atomic_load_n(&control->is_paused, __ATOMIC_ACQUIRE)) {
-        if (__atomic_load_n(&control->slices, __ATOMIC_ACQUIRE) > 0) {
+    bool may_pass = false;
+    idle(user);
+    __atomic_store_n(&control->stands, true, __ATOMIC_RELEASE);
+    while (!may_pass && __atomic_load_n(&control->is_paused, __ATOMIC_ACQUIRE)) {
+        may_pass = __atomic_load_n(&control->slices, __ATOMIC_ACQUIRE) > 0;
+        if (may_pass) {
             (void)__atomic_sub_fetch(&control->slices, 1, __ATOMIC_ACQ_REL);
-            return;
+        } else {
+            (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &a_while, NULL);
+            idle(user);
         }
-        (void)clock_nanosleep(CLOCK_MONOTONIC, 0, &a_while, NULL);
     }
+    __atomic_store_n(&control->stands, false, __ATOMIC_RELEASE);
 }
 
 void wh_live_control_slice(wh_live_control_t *control, wh_live_pace_t *pace, int64_t run_us,
-                           void (*rest)(void *user), void *user) {
+                           void (*idle)(void *user), void *user) {
     if (__atomic_load_n(&control->is_paused, __ATOMIC_RELAXED)) {
-        hold(control, rest, user);
+        hold(control, idle, user);
         wh_live_pace_begin(pace);
         return;
     }
     wh_live_pace_wait(pace, (double)__atomic_load_n(&control->rate_ppm, __ATOMIC_RELAXED) / 1e6, run_us);
 }
 
-void wh_live_control_command(wh_live_control_t *control, void (*rest)(void *user), void *user) {
+void wh_live_control_command(wh_live_control_t *control, void (*idle)(void *user), void *user) {
     if (__atomic_exchange_n(&control->ends_at_command, false, __ATOMIC_ACQ_REL)) {
         __atomic_store_n(&control->is_paused, true, __ATOMIC_RELEASE);
-        hold(control, rest, user);
+        hold(control, idle, user);
     }
 }
 
-/* --------------------------------------------------------------------------------------------- the tester */
-
-static bool connect_tester(wh_live_control_t *control) {
-    wh_address_t address;
-    if (control->is_connected) {
-        return true;
-    }
-    if (!wh_address_read(control->tester, &address)) {
-        return false;
-    }
-    control->fd = socket(address.bytes.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    control->is_connected =
-        control->fd >= 0 && connect(control->fd, (const struct sockaddr *)&address.bytes, address.size) == 0;
-    if (!control->is_connected && control->fd >= 0) {
-        (void)close(control->fd);
-    }
-    return control->is_connected;
+void wh_live_control_go_on(wh_live_control_t *control) {
+    __atomic_store_n(&control->ends_at_command, false, __ATOMIC_RELEASE);
+    __atomic_store_n(&control->slices, 0, __ATOMIC_RELEASE);
+    __atomic_store_n(&control->is_paused, false, __ATOMIC_RELEASE);
 }
 
-static void leave_tester(wh_live_control_t *control) {
-    if (control->is_connected) {
-        (void)close(control->fd);
-        control->is_connected = false;
-    }
-}
+/* --------------------------------------------------------------------------------------- lines for others */
 
-void wh_live_control_drain(wh_live_control_t *control) {
-    char bytes[4096];
-    ssize_t got = 1;
-    while (control->is_connected && got > 0) {
-        got = recv(control->fd, bytes, sizeof bytes, MSG_DONTWAIT);
-        if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) {
-            leave_tester(control);
-        }
-    }
-}
-
-/* Once more if the connection was lost since. */
-static bool send_line(wh_live_control_t *control, const char *line) {
-    const size_t size = strlen(line);
-    for (int attempt = 0; attempt < 2; ++attempt) {
-        wh_live_control_drain(control);
-        if (!connect_tester(control)) {
-            return false;
-        }
-        if (send(control->fd, line, size, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)size) {
-            return true;
-        }
-        leave_tester(control);
-    }
-    return false;
+/* The answer comes later, with this number. */
+static unsigned accept(const wh_live_control_t *control, char **answer) {
+    char told[64];
+    (void)snprintf(told, sizeof told, "{\"ok\":true,\"id\":%lld}", (long long)control->requests);
+    *answer = wh_text_copy(told);
+    return ACCEPTED;
 }
 
 /* Hands { id, line } or { id, rate } on; the answer comes as a frame with this id. */
 static unsigned ask_tester(wh_live_control_t *control, const char *key, json_t *value, char **answer) {
     json_t *request = json_object();
-    char line[MOST_LINE + 200];
-    wh_json_put(request, "id", json_integer((json_int_t)++control->requests));
+    char line[WH_LIVE_LINE_BYTES * 6 + 200];
+    wh_json_put(request, "id", json_integer(++control->requests));
     wh_json_put(request, key, json_incref(value));
     char *text = json_dumps(request, JSON_COMPACT);
     json_decref(request);
     const int length = snprintf(line, sizeof line, "%s\n", text ? text : "");
     free(text);
-    if (length < 2 || (size_t)length >= sizeof line || !send_line(control, line)) {
+    if (length < 2 || (size_t)length >= sizeof line || !wh_live_tester_send(&control->tester, line)) {
         *answer = wh_text_copy("{\"ok\":false,\"text\":\"the tester's port does not answer\"}");
         return UNAVAILABLE;
     }
-    char told[64];
-    (void)snprintf(told, sizeof told, "{\"ok\":true,\"id\":%llu}", (unsigned long long)control->requests);
-    *answer = wh_text_copy(told);
-    return ACCEPTED;
+    return accept(control, answer);
 }
 
 /* ----------------------------------------------------------------------------------------------- requests */
@@ -165,27 +132,53 @@ static unsigned set_rate(wh_live_control_t *control, json_t *given, char **answe
     if (control->controlled == WH_LIVE_TESTER) {
         return ask_tester(control, "rate", given, answer);
     }
+    if (!control->paces) {
+        return refuse(BAD, "rate: motion control runs free (expected mcs without --rate)", answer);
+    }
     __atomic_store_n(&control->rate_ppm, (int64_t)(rate * 1e6), __ATOMIC_RELAXED);
     return done(answer);
 }
 
-static unsigned take_line(wh_live_control_t *control, json_t *given, char **answer) {
-    const char *line = json_string_value(given);
-    if (control->controlled != WH_LIVE_TESTER) {
-        return refuse(BAD, "line: a script commands this run (expected serve --page-control)", answer);
+/* A STOP ends a pause, so that what stands still can end. */
+static unsigned ask_operator(wh_live_control_t *control, const char *line, bool completes, char **answer) {
+    if (!wh_live_lines_put(&control->lines, control->requests + 1, completes, line)) {
+        return refuse(UNAVAILABLE, "too many lines wait (expected fewer than 16)", answer);
     }
-    if (!line || json_string_length(given) > MOST_LINE || line[strcspn(line, "\r\n")] != '\0') {
+    ++control->requests;
+    if (!completes && wh_session_says(line, "STOP")) {
+        wh_live_control_go_on(control);
+    }
+    return accept(control, answer);
+}
+
+static unsigned take_line(wh_live_control_t *control, json_t *given, bool completes, char **answer) {
+    const char *line = json_string_value(given);
+    if (control->controlled == WH_LIVE_RUN) {
+        return refuse(BAD, "line: a script commands this run (expected serve, or mcs --layout)", answer);
+    }
+    if (!line || json_string_length(given) > WH_LIVE_LINE_BYTES || line[strcspn(line, "\r\n")] != '\0') {
         return refuse(BAD, "line: expected one line of at most 1000 bytes", answer);
     }
-    return ask_tester(control, "line", given, answer);
+    if (control->controlled == WH_LIVE_PROMPT) {
+        return ask_operator(control, line, completes, answer);
+    }
+    return completes
+               ? refuse(BAD, "complete: a tester's lines are not completed (expected mcs --layout)", answer)
+               : ask_tester(control, "line", given, answer);
+}
+
+static unsigned refuse_pause(const wh_live_control_t *control, char **answer) {
+    return control->controlled == WH_LIVE_TESTER
+               ? refuse(BAD, "pause: hosts wait for their answers (expected run --page-control)", answer)
+               : refuse(BAD, "pause: motion control runs free (expected mcs without --rate)", answer);
 }
 
 /* Pauses, and the ways on from there. */
 static unsigned take_pause(wh_live_control_t *control, const json_t *request, char **answer) {
     const json_t *pause = json_object_get(request, "pause");
     const json_t *slices = json_object_get(request, "slices");
-    if (control->controlled != WH_LIVE_RUN) {
-        return refuse(BAD, "pause: hosts wait for their answers (expected run --page-control)", answer);
+    if (!control->paces) {
+        return refuse_pause(control, answer);
     }
     if (slices) {
         const json_int_t count = json_integer_value(slices);
@@ -254,6 +247,7 @@ static unsigned take_rest(wh_live_control_t *control, const json_t *request, cha
 static unsigned take(wh_live_control_t *control, const json_t *request, char **answer) {
     json_t *rate = json_object_get(request, "rate");
     json_t *line = json_object_get(request, "line");
+    json_t *complete = json_object_get(request, "complete");
     if (!is_token(control, json_object_get(request, "token"))) {
         return refuse(FORBIDDEN, "the token is wrong (expected the one that the program has printed)",
                       answer);
@@ -261,8 +255,11 @@ static unsigned take(wh_live_control_t *control, const json_t *request, char **a
     if (json_object_size(request) != 2) {
         return refuse(BAD, EXPECTED, answer);
     }
-    if (rate || line) {
-        return rate ? set_rate(control, rate, answer) : take_line(control, line, answer);
+    if (line || complete) {
+        return take_line(control, line ? line : complete, complete, answer);
+    }
+    if (rate) {
+        return set_rate(control, rate, answer);
     }
     return take_rest(control, request, answer);
 }
@@ -278,21 +275,31 @@ unsigned wh_live_control_take(wh_live_control_t *control, const char *body, size
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-bool wh_live_control_begin(wh_live_control_t *control, wh_live_controlled_t controlled, double rate) {
-    unsigned char bytes[WH_LIVE_TOKEN / 2];
+/* The token has bytes of its own: numbers of requests are no secret. */
+typedef struct {
+    unsigned char token[WH_LIVE_TOKEN / 2];
+    uint32_t base;
+} drawn_t;
+
+bool wh_live_control_begin(wh_live_control_t *control, wh_live_controlled_t controlled, bool paces,
+                           double rate) {
+    drawn_t drawn;
     control->controlled = controlled;
+    control->paces = paces && controlled != WH_LIVE_TESTER;
     control->rate_ppm = (int64_t)(rate * 1e6);
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes) {
+    if (!wh_live_lines_open(&control->lines) || getrandom(&drawn, sizeof drawn, 0) != (ssize_t)sizeof drawn) {
         return false;
     }
-    for (size_t i = 0; i < sizeof bytes; ++i) {
-        (void)snprintf(control->token + 2 * i, 3, "%02x", bytes[i]);
+    for (size_t i = 0; i < sizeof drawn.token; ++i) {
+        (void)snprintf(control->token + 2 * i, 3, "%02x", drawn.token[i]);
     }
-    /* Other testers number their requests from 1 on. */
-    control->requests = 1000000000U + 1000U * (unsigned)(bytes[0] << 8 | bytes[1]);
+    control->base = controlled == WH_LIVE_TESTER ? TESTERS_BASE + 1000LL * (drawn.base & 0xffffU)
+                                                 : OPERATORS_BASE + 65536LL * drawn.base;
+    control->requests = control->base;
     return true;
 }
 
 void wh_live_control_end(wh_live_control_t *control) {
-    leave_tester(control);
+    wh_live_tester_leave(&control->tester);
+    wh_live_lines_close(&control->lines);
 }

@@ -104,10 +104,10 @@ static json_t *robots_of(const wh_layout_t *layout) {
 }
 
 static json_t *state_of(const wh_live_kept_t *kept, const wh_live_state_t *state) {
-    json_t *object =
-        wh_json_set(json_object(), "rate %g pace %g over %i dropped %i control %s paused %i held %i",
-                    state->rate > 0 ? state->rate : HUGE_VAL, state->pace >= 0 ? state->pace : HUGE_VAL,
-                    kept->is_over, kept->has_dropped, state->control, state->is_paused, kept->is_held);
+    json_t *object = wh_json_set(
+        json_object(), "rate %g pace %g over %i dropped %i control %s paces %i paused %i stands %i held %i",
+        state->rate > 0 ? state->rate : HUGE_VAL, state->pace >= 0 ? state->pace : HUGE_VAL, kept->is_over,
+        kept->has_dropped, state->control, state->paces, state->is_paused, state->stands, kept->is_held);
     (void)wh_json_set(object, "held_robots %s", kept->held);
     if (state->lists_robots) {
         wh_json_put(object, "robots", robots_of(kept->record.layout));

@@ -57,6 +57,18 @@ static const entries_t wait_entries = {sizeof(wh_wait_record_t), {offsetof(wh_wa
 static const entries_t frame_entries = {sizeof(wh_live_frame_t),
                                         {offsetof(wh_live_frame_t, port), offsetof(wh_live_frame_t, text)}};
 
+/* Frees the texts of some entries of a list. */
+static void free_texts(const entries_t *entries, void *list, size_t begin, size_t end) {
+    char *items = list;
+    for (size_t i = 2 * begin; i < 2 * end; ++i) {
+        if (entries->texts[i % 2] != NO_TEXT) {
+            char *text;
+            memcpy(&text, items + (i / 2) * entries->size + entries->texts[i % 2], sizeof text);
+            free(text);
+        }
+    }
+}
+
 /* Drops the older half of a list that is full. */
 static void make_room(wh_live_kept_t *kept, const entries_t *entries, void *list, size_t *count) {
     if (*count < WH_LIVE_KEPT) {
@@ -64,13 +76,7 @@ static void make_room(wh_live_kept_t *kept, const entries_t *entries, void *list
     }
     char *items = list;
     const size_t half = *count / 2;
-    for (size_t i = 0; i < 2 * half; ++i) {
-        if (entries->texts[i % 2] != NO_TEXT) {
-            char *text;
-            memcpy(&text, items + (i / 2) * entries->size + entries->texts[i % 2], sizeof text);
-            free(text);
-        }
-    }
+    free_texts(entries, list, 0, half);
     memmove(items, items + half * entries->size, (*count - half) * entries->size);
     *count -= half;
     kept->is_anew = kept->has_dropped = true;
@@ -87,18 +93,66 @@ static void add_look(wh_live_kept_t *kept, const wh_glimpse_t *look) {
     wh_signals_slice(signals, look->axis_count > 0 ? look->axes : NULL, look->axis_count, &state);
 }
 
+/* A simulator that was handed a state does not know the axes: then they are unknown, and not at home. */
+static bool begins_anew(const wh_live_kept_t *kept, const wh_glimpse_t *look) {
+    return look->epoch > kept->epoch || (!kept->has_looks && look->axis_count == 0 && look->state.seq > 0);
+}
+
 void wh_live_kept_look(wh_live_kept_t *kept, const wh_glimpse_t *look) {
     const wh_layout_t *layout = kept->record.layout;
+    const bool is_start = look->state.seq == 0;
     if (look->epoch < kept->epoch) {
         return;
     }
-    if (look->epoch > kept->epoch) {
+    if (begins_anew(kept, look)) {
         kept->epoch = look->epoch;
         wh_signals_close(&kept->signals);
-        wh_signals_begin(&kept->signals, layout, false);
+        wh_signals_begin(&kept->signals, layout, is_start);
         kept->is_anew = true;
     }
-    add_look(kept, look);
+    kept->has_looks = true;
+    if (!is_start) {
+        add_look(kept, look);
+    }
+}
+
+/* Texts of the entries from `count` on go. */
+static void cut(wh_live_kept_t *kept, wh_live_list_t list, const entries_t *entries, void *items,
+                size_t *count, size_t left) {
+    free_texts(entries, items, left, *count);
+    *count = left;
+    kept->due[list] = left < kept->due[list] ? left : kept->due[list];
+}
+
+/* Commands that ended, and events, after that time have not been. A frame was said all the same: it stands
+ * where the clock then stood. */
+static void take_set_back(wh_live_kept_t *kept, const wh_news_t *news) {
+    wh_record_t *record = &kept->record;
+    size_t commands = 0;
+    size_t events = 0;
+    size_t stations = 0;
+    wh_live_kept_look(kept, news->look);
+    while (commands < record->command_count &&
+           record->commands[commands].end_s <= (double)news->utime / 1e6) {
+        ++commands;
+    }
+    while (events < record->event_count && record->events[events].utime <= news->utime) {
+        ++events;
+    }
+    while (stations < record->station_event_count &&
+           record->station_events[stations].event.at_us <= news->utime) {
+        ++stations;
+    }
+    cut(kept, WH_LIVE_COMMANDS, &command_entries, record->commands, &record->command_count, commands);
+    cut(kept, WH_LIVE_EVENTS, &event_entries, record->events, &record->event_count, events);
+    cut(kept, WH_LIVE_STATIONS, &station_entries, record->station_events, &record->station_event_count,
+        stations);
+    cut(kept, WH_LIVE_WAITS, &wait_entries, record->waits, &record->wait_count, 0);
+    for (size_t i = 0; i < kept->frame_count; ++i) {
+        const int64_t utime = kept->frames[i].utime;
+        kept->frames[i].utime = utime < news->utime ? utime : news->utime;
+    }
+    kept->is_anew = true;
 }
 
 static void take_events(wh_live_kept_t *kept, const wh_news_t *news) {
@@ -209,11 +263,16 @@ static void take_rest(wh_live_kept_t *kept, const wh_news_t *news) {
 }
 
 void wh_live_kept_news(wh_live_kept_t *kept, const wh_news_t *news) {
-    static void (*const take[])(wh_live_kept_t *, const wh_news_t *) = {
-        [WH_NEWS_EVENTS] = take_events,     [WH_NEWS_COMMAND_BEGINS] = take_begin,
-        [WH_NEWS_COMMAND_ENDED] = take_end, [WH_NEWS_EXPECTED] = take_rest,
-        [WH_NEWS_STATION] = take_rest,      [WH_NEWS_WAITS] = take_wait,
-        [WH_NEWS_GOES_ON] = end_wait,       [WH_NEWS_FRAME] = take_frame,
-        [WH_NEWS_ENDED] = take_rest,        [WH_NEWS_HELD] = take_rest};
+    static void (*const take[])(wh_live_kept_t *, const wh_news_t *) = {[WH_NEWS_EVENTS] = take_events,
+                                                                        [WH_NEWS_SET_BACK] = take_set_back,
+                                                                        [WH_NEWS_COMMAND_BEGINS] = take_begin,
+                                                                        [WH_NEWS_COMMAND_ENDED] = take_end,
+                                                                        [WH_NEWS_EXPECTED] = take_rest,
+                                                                        [WH_NEWS_STATION] = take_rest,
+                                                                        [WH_NEWS_WAITS] = take_wait,
+                                                                        [WH_NEWS_GOES_ON] = end_wait,
+                                                                        [WH_NEWS_FRAME] = take_frame,
+                                                                        [WH_NEWS_ENDED] = take_rest,
+                                                                        [WH_NEWS_HELD] = take_rest};
     take[news->kind](kept, news);
 }

@@ -36,8 +36,9 @@ typedef struct {
     size_t frame_count, frame_capacity;
     bool is_over, is_good, is_held;
     char *failure;
-    char *held;                /* the robots that a HOLD holds; null: all that runs */
-    uint64_t epoch;            /* of the looks so far */
+    char *held;     /* the robots that a HOLD holds; null: all that runs */
+    uint64_t epoch; /* of the looks so far */
+    bool has_looks;
     bool is_anew;              /* what was told must be forgotten, and all of it told again */
     bool has_news;             /* that should not wait */
     bool has_dropped;          /* older entries */
@@ -57,7 +58,7 @@ typedef struct {
     const char *title, *reproduce;
     const char *id;      /* of this process */
     const char *control; /* what the page may command, a word; null: nothing */
-    bool is_paused, lists_faults, lists_robots;
+    bool is_paused, stands, lists_faults, lists_robots, paces; /* paces: it may be paused */
     double rate, pace; /* rate: 0, as fast as it goes; pace: what comes of it, below 0 if not known */
 } wh_live_state_t;
 

@@ -82,13 +82,16 @@ static void hear(void *user, const waferhand_mcs *message) {
     wh_live_tell(sim->live, news);
 }
 
-bool wh_live_sim_open(wh_live_sim_t *sim, const wh_live_arguments_t *arguments,
-                      wh_sim_process_t *simulation) {
+bool wh_live_sim_open(wh_live_sim_t *sim, const wh_live_arguments_t *arguments, wh_sim_process_t *simulation,
+                      const wh_live_sim_driver_t *driver) {
     const wh_mcs_listener_t nobody = {0};
     const wh_live_options_t wanted = {
         .speaker = "sim",
         .title = simulation->server.layout->path,
-        .uncontrolled = "motion control commands this cell over LCM (expected run or serve)"};
+        .uncontrolled = driver->is_board
+                            ? "a board commands this cell (expected run, mcs or serve)"
+                            : "motion control commands this cell over LCM (expected run, mcs or serve)",
+        .rate = driver->rate};
     if (!wh_live_open(&sim->live, arguments, &wanted)) {
         return false;
     }
@@ -107,15 +110,15 @@ void wh_live_sim_tick(wh_live_sim_t *sim) {
         return;
     }
     const wh_protocol_server_t *server = &sim->simulation->server;
-    const bool is_same = server->identity.run == sim->run && server->seq == sim->seq;
-    if (is_same || server->seq == 0) {
+    if (server->identity.run != sim->run && sim->run != 0) {
+        sim->listener.begins(sim->listener.user, server->layout);
+        sim->seq = 0;
+    }
+    sim->run = server->identity.run;
+    if (server->seq == sim->seq) {
         wh_live_rest(sim->live);
         return;
     }
-    if (server->identity.run != sim->run && sim->run != 0) {
-        sim->listener.begins(sim->listener.user, server->layout);
-    }
-    sim->run = server->identity.run;
     sim->seq = server->seq;
     sim->command.axis_count = server->has_axes ? server->layout->machine.axis_count : 0;
     for (size_t axis = 0; axis < sim->command.axis_count; ++axis) {

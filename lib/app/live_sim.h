@@ -1,4 +1,4 @@
-/* The live page of a simulator that others command over LCM: `sim --page`. */
+/* The live page of a simulator that others command, over LCM or from a board: `sim --page`. */
 #ifndef WH_APP_LIVE_SIM_H
 #define WH_APP_LIVE_SIM_H
 
@@ -19,9 +19,16 @@ typedef struct {
     size_t begun_count;
 } wh_live_sim_t;
 
+/* The one that commands the cell. */
+typedef struct {
+    bool is_board;
+    double rate; /* of simulated time to the wall clock; 0: as fast as commands come */
+} wh_live_sim_driver_t;
+
 /* Opens the page, if one is wanted; the simulation must be open and outlive it. False, with a message: it
  * cannot be served. */
-bool wh_live_sim_open(wh_live_sim_t *sim, const wh_live_arguments_t *arguments, wh_sim_process_t *simulation);
+bool wh_live_sim_open(wh_live_sim_t *sim, const wh_live_arguments_t *arguments, wh_sim_process_t *simulation,
+                      const wh_live_sim_driver_t *driver);
 
 /* Hands the last slice on. Call it after each message, and each 100 ms. */
 void wh_live_sim_tick(wh_live_sim_t *sim);

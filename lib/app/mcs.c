@@ -3,8 +3,8 @@
 
 #include "app.h"
 #include "connection.h"
+#include "mcs_prompt.h"
 #include "prompt/input.h"
-#include "prompt/prompt.h"
 #include "run_arguments.h"
 
 typedef struct {
@@ -87,45 +87,6 @@ static const wh_command_line_t command_line = {
 
 /* --------------------------------------------------------------------------------------------- the prompt */
 
-/* The things that the prompt serves besides its input. */
-typedef struct {
-    wh_mcs_link_t *link;
-    wh_session_t *session;
-} attendance_t;
-
-static void attend(void *user) {
-    static char answer[WH_SESSION_ANSWER_BYTES];
-    attendance_t *attendance = user;
-    char line[WH_LINK_LINE];
-    wh_mcs_process_idle(&attendance->link->control);
-    while (!wh_interrupt_is_due() && wh_mcs_process_next_request(&attendance->link->control, line)) {
-        const wh_status_t status = wh_session_execute(attendance->session, line, answer, sizeof answer);
-        wh_mcs_process_answer(&attendance->link->control, status, answer);
-    }
-}
-
-static void stop_waiting(void *user) {
-    const attendance_t *attendance = user;
-    wh_mcs_process_stop_waiting(&attendance->link->control);
-}
-
-static void say(void *user, const char *line) {
-    wh_prompt_say(user, line);
-}
-
-static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
-    attendance_t attendance = {link, session};
-    const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, stop_waiting, &attendance};
-    wh_prompt_t *prompt = wh_prompt_open(session, &watch);
-    link->control.last_beat_us = wh_node_clock_us(); /* piped input is executed before the first beat */
-    link->node.listener = say;
-    link->node.listener_user = prompt;
-    const int status = wh_prompt_run(prompt);
-    link->node.listener = NULL;
-    wh_prompt_close(prompt);
-    return status;
-}
-
 /* A session's run has no expectations that would report it. */
 static int judge_missed(const arguments_t *arguments, const wh_session_t *session, const wh_node_t *node,
                         int status) {
@@ -144,26 +105,27 @@ static int judge_missed(const arguments_t *arguments, const wh_session_t *sessio
 }
 
 static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
-    static wh_session_t session;
+    static wh_mcs_prompt_t prompt;
     wh_session_options_t wanted = {
         .layout = arguments->layout,
         .limits = arguments->run.run.limits,
         .parameters = arguments->run.run.parameters,
         .parameter_count = arguments->run.run.parameter_count,
-        .partners = wh_mcs_process_partners(&link->control),
         .is_of_hosts = true,
     };
     int status = WH_EXIT_USAGE;
-    wanted.listener = wh_live_listener(arguments->run.live, &wanted.listener);
+    prompt.link = link;
+    prompt.live = arguments->run.live;
     /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
-    if (wh_session_open(&session, &wanted)) {
-        status = judge_missed(arguments, &session, &link->node, take_commands(&session, link));
+    if (wh_mcs_prompt_open(&prompt, &wanted)) {
+        status = judge_missed(arguments, &prompt.session, &link->node, wh_mcs_prompt_run(&prompt));
     } else {
-        fprintf(stderr, "%s\n", session.message);
+        fprintf(stderr, "%s\n", prompt.session.message);
     }
+    link->control.owner = (wh_mcs_process_owner_t){0};
     wh_live_close(arguments->run.live); /* it has the session's layout */
-    wh_session_close(&session);
+    wh_session_close(&prompt.session);
     return status;
 }
 
@@ -181,22 +143,57 @@ static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
     return wh_run_and_print(&arguments->run);
 }
 
-/* With a page, if one is wanted, which ends with the run. */
-static int run(arguments_t *arguments, wh_mcs_link_t *link) {
-    const wh_live_options_t wanted = {
+/* A script's page, which may hold motion control up. */
+typedef struct {
+    wh_mcs_link_t *link;
+    wh_live_t *live;
+} held_t;
+
+/* While it stands still, others hear that motion control is there; a signal ends the pause. */
+static void attend_pause(void *user) {
+    const held_t *held = user;
+    wh_mcs_process_idle(&held->link->control);
+    if (wh_stop_requested) {
+        wh_live_go_on(held->live);
+    }
+}
+
+static void show_script(arguments_t *arguments, wh_mcs_link_t *link) {
+    static held_t held;
+    held = (held_t){link, arguments->run.live};
+    link->control.owner.waits = wh_live_rest; /* for a simulator that is silent */
+    link->control.owner.user = arguments->run.live;
+    wh_live_set_attendant(held.live, attend_pause, &held);
+}
+
+/* A page whose slices wait here lets the cell move as fast as the wall clock, until it is told otherwise. */
+static wh_live_options_t page_of(const arguments_t *arguments) {
+    const bool runs_free = arguments->link.client.rate > 0;
+    const bool paces = arguments->page.controls && !runs_free;
+    return (wh_live_options_t){
         .speaker = "mcs",
         .title = arguments->layout ? arguments->layout : arguments->run.run.script,
-        .uncontrolled =
-            "the simulator is another process, which this one cannot pause (expected run or serve)",
-        .rate = arguments->link.client.rate};
+        .controlled = arguments->layout ? WH_LIVE_PROMPT : WH_LIVE_RUN,
+        .uncontrolled = runs_free && !arguments->layout
+                            ? "motion control runs free, and nothing holds it up (expected no --rate)"
+                            : NULL,
+        .rate = paces ? 1 : arguments->link.client.rate,
+        .paces = paces};
+}
+
+/* With a page, if one is wanted, which ends with the run. */
+static int run(arguments_t *arguments, wh_mcs_link_t *link) {
+    const wh_live_options_t wanted = page_of(arguments);
     if (!wh_live_open(&arguments->run.live, &arguments->page, &wanted)) {
         return WH_EXIT_USAGE;
     }
-    if (arguments->run.live) {
-        link->control.owner.waits = wh_live_rest; /* for a simulator that is silent */
-        link->control.owner.user = arguments->run.live;
+    if (arguments->layout) {
+        return run_prompt(arguments, link);
     }
-    return arguments->layout ? run_prompt(arguments, link) : run_script(arguments, link);
+    if (arguments->run.live) {
+        show_script(arguments, link);
+    }
+    return run_script(arguments, link);
 }
 
 int wh_app_mcs(int argc, char **argv) {

@@ -16,11 +16,13 @@
 #include "run_arguments.h"
 #include "serve_beside.h"
 #include "serve_cell.h"
+#include "serve_coverage.h"
+#include "serve_ports.h"
 
 typedef struct {
     wh_layout_arguments_t layout;
     wh_run_arguments_t run; /* only its files come from the command line */
-    wh_option_list_t dialects, mechanisms, units, tcp, pty;
+    wh_serve_ports_t ports;
     double rate; /* 0: not given */
     bool lockstep;
     const char *transcript, *coverage;
@@ -31,22 +33,6 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"dialect", 0, "FILE", "How the next port's controller talks: a Lua file, see lua/dialects/README.md",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, dialects)},
-    {"mechanism", 0, "NAME",
-     "The dialect before it speaks for this: a robot or a station of the layout, such as an "
-     "aligner (default: what its dialect says, else the whole cell)",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, mechanisms)},
-    {"unit", 0, "ADDRESS",
-     "The dialect before it is the unit of this address on its line; without a port of its own on the line "
-     "of "
-     "the dialect before that",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, units)},
-    {"tcp", 0, "ADDRESS:PORT",
-     "A dialect's port: listen there; without an address at 127.0.0.1, 0 is any port", WH_OPTION_LIST,
-     .variable = offsetof(arguments_t, tcp)},
-    {"pty", 0, "LINK", "A dialect's port: a serial line, to which this link leads", WH_OPTION_LIST,
-     .variable = offsetof(arguments_t, pty)},
     {"rate", 0, "FACTOR", "Let simulated time pass so much faster than the wall clock (default 1)",
      WH_OPTION_REAL, .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
     {"lockstep", 0, NULL, "Wait for no clock: commands take as long as they take to compute", WH_OPTION_FLAG,
@@ -61,22 +47,13 @@ static const wh_option_t options[] = {
 
 static void check_serve_arguments(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
-    const size_t ports = arguments->tcp.count + arguments->pty.count;
-    if (arguments->dialects.count == 0) {
-        argp_error(state, "which --dialect?");
-    }
-    if (ports + arguments->units.count < arguments->dialects.count || ports == 0 || ports > WH_HOST_PORTS ||
-        arguments->dialects.count > WH_HOST_PORTS) {
-        argp_error(state,
-                   "%zu --dialect, %zu --tcp and --pty (expected one port for each dialect, at most %d)",
-                   arguments->dialects.count, ports, WH_HOST_PORTS);
-    }
     if (arguments->lockstep && arguments->rate > 0) {
         argp_error(state, "--lockstep waits for no clock: no --rate beside it");
     }
 }
 
 static const wh_option_table_t tables[] = {
+    {wh_serve_ports_options, offsetof(arguments_t, ports), NULL, wh_serve_ports_check},
     {options, 0, NULL, check_serve_arguments},
     {wh_serve_beside_options, offsetof(arguments_t, beside), NULL, NULL},
     {wh_serve_cell_options, offsetof(arguments_t, cell), NULL, wh_serve_cell_check},
@@ -94,128 +71,6 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "layout",
     .operand_variable = offsetof(arguments_t, layout.path)};
-
-/* -------------------------------------------------------------------------------------------------- ports */
-
-/* The argument of the command line that it is, or belongs to. */
-static int place_of(int argc, char **argv, const char *item) {
-    for (int i = 0; i < argc; ++i) {
-        for (const char *c = argv[i];; ++c) {
-            if (c == item) {
-                return i;
-            }
-            if (*c == '\0') {
-                break;
-            }
-        }
-    }
-    return argc;
-}
-
-static bool open_port(wh_host_t *host, const wh_host_port_t *port) {
-    const size_t first = host->count;
-    if (!(port->dialect ? wh_host_add : wh_host_add_port)(host, port)) {
-        fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect->message);
-        return false;
-    }
-    wh_serve_beside_tell(host, host->controllers[first], host->controllers[first]->dialect->name);
-    return true;
-}
-
-/* The next port of the command line, of either kind. */
-typedef struct {
-    const arguments_t *arguments;
-    int argc;
-    char **argv;
-    size_t tcp, pty; /* taken so far */
-} addresses_t;
-
-/* The option of this list between this dialect and the next one, such as its mechanism; null: there is
- * none. */
-static const char *option_of(const addresses_t *at, size_t dialect, const wh_option_list_t *list) {
-    const wh_option_list_t *dialects = &at->arguments->dialects;
-    const int begin = place_of(at->argc, at->argv, dialects->items[dialect]);
-    const int end =
-        dialect + 1 < dialects->count ? place_of(at->argc, at->argv, dialects->items[dialect + 1]) : at->argc;
-    const char *found = NULL;
-    for (size_t i = 0; i < list->count && !found; ++i) {
-        const int place = place_of(at->argc, at->argv, list->items[i]);
-        found = place > begin && place < end ? list->items[i] : NULL;
-    }
-    return found;
-}
-
-/* False: none is left. */
-static bool take_address(addresses_t *at, wh_host_port_t *port) {
-    const arguments_t *arguments = at->arguments;
-    const bool has_tcp = at->tcp < arguments->tcp.count;
-    const bool has_pty = at->pty < arguments->pty.count;
-    const int tcp = has_tcp ? place_of(at->argc, at->argv, arguments->tcp.items[at->tcp]) : at->argc;
-    const int pty = has_pty ? place_of(at->argc, at->argv, arguments->pty.items[at->pty]) : at->argc;
-    port->is_pty = pty < tcp;
-    if (has_tcp || has_pty) {
-        port->address = port->is_pty ? arguments->pty.items[at->pty++] : arguments->tcp.items[at->tcp++];
-    }
-    return has_tcp || has_pty;
-}
-
-static bool refuse_count(const wh_host_t *host, const addresses_t *at) {
-    const size_t given = at->arguments->tcp.count + at->arguments->pty.count;
-    const wh_dialect_t *dialect = host->count > 0 ? host->controllers[host->count - 1]->dialect : NULL;
-    if (dialect && wh_host_needs_port(host)) {
-        fprintf(stderr, "%s: %zu --tcp and --pty (expected one for each of the %zu ports that it names)\n",
-                dialect->path, given, dialect->clients.port_count);
-    } else {
-        fprintf(stderr, "%zu --tcp and --pty (expected %zu, one for each dialect or port that it names)\n",
-                given, at->tcp + at->pty);
-    }
-    return false;
-}
-
-/* Opens a dialect with all of its ports, each at the next address. */
-static bool open_dialect(wh_host_t *host, addresses_t *at, size_t i) {
-    const arguments_t *arguments = at->arguments;
-    wh_host_port_t port = {.dialect = arguments->dialects.items[i],
-                           .mechanism = option_of(at, i, &arguments->mechanisms),
-                           .unit = option_of(at, i, &arguments->units)};
-    port.shares_line = port.unit && !option_of(at, i, &arguments->tcp) && !option_of(at, i, &arguments->pty);
-    if (port.shares_line) {
-        return open_port(host, &port);
-    }
-    bool good = (take_address(at, &port) || refuse_count(host, at)) && open_port(host, &port);
-    while (good && wh_host_needs_port(host)) {
-        port.dialect = NULL;
-        good = (take_address(at, &port) || refuse_count(host, at)) && open_port(host, &port);
-    }
-    return good;
-}
-
-/* False if an option that belongs to a dialect stands before all of them, or twice behind one. */
-static bool are_placed(const addresses_t *at, const char *option, const wh_option_list_t *list) {
-    size_t placed = 0;
-    for (size_t i = 0; i < at->arguments->dialects.count; ++i) {
-        placed += option_of(at, i, list) ? 1 : 0;
-    }
-    if (placed < list->count) {
-        fprintf(stderr, "%s: %zu of %zu (expected one behind each --dialect at most)\n", option, placed,
-                list->count);
-    }
-    return placed == list->count;
-}
-
-static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
-    addresses_t at = {.arguments = arguments, .argc = argc, .argv = argv};
-    for (size_t i = 0; i < arguments->dialects.count; ++i) {
-        if (!open_dialect(host, &at, i)) {
-            return false;
-        }
-    }
-    if (at.tcp + at.pty < arguments->tcp.count + arguments->pty.count) {
-        return refuse_count(host, &at);
-    }
-    return are_placed(&at, "--mechanism", &arguments->mechanisms) &&
-           are_placed(&at, "--unit", &arguments->units);
-}
 
 /* ------------------------------------------------------------------------------------------------ outputs */
 
@@ -284,58 +139,6 @@ static bool close_transcript(wh_host_t *host, const arguments_t *arguments) {
     return true;
 }
 
-static bool is_name(const char *name, const char *text, size_t size) {
-    return strlen(name) == size && memcmp(name, text, size) == 0;
-}
-
-/* The counts of an earlier run, which go on. False if the file is not one of ours. */
-static bool read_coverage(const char *path, uint64_t shown[]) {
-    FILE *in = fopen(path, "re");
-    char line[200];
-    bool is_ours = true;
-    if (!in) {
-        return errno == ENOENT;
-    }
-    while (is_ours && fgets(line, sizeof line, in)) {
-        char *name = NULL;
-        const long number = strtol(line, &name, 10);
-        const char *count = *name == ' ' ? strchr(name + 1, ' ') : NULL;
-        is_ours = count && number > 0 && number < WH_HOST_NUMBERS &&
-                  is_name(wh_status_name((wh_status_t)number), name + 1, (size_t)(count - name - 1));
-        shown[is_ours ? number : 0] += is_ours ? strtoull(count + 1, NULL, 10) : 0;
-    }
-    (void)fclose(in);
-    return is_ours;
-}
-
-static bool write_coverage(void *user, FILE *out) {
-    const uint64_t *shown = user;
-    for (int number = 1; number < WH_HOST_NUMBERS; ++number) {
-        const char *name = wh_status_name((wh_status_t)number);
-        if (strcmp(name, "UNKNOWN") != 0) {
-            fprintf(out, "%d %s %" PRIu64 "\n", number, name, shown[number]);
-        }
-    }
-    return ferror(out) == 0;
-}
-
-/* Adds the counts of that text; false if it is no coverage. */
-static bool add_coverage(const char *path, uint64_t shown[]) {
-    if (!path || read_coverage(path, shown)) {
-        return true;
-    }
-    fprintf(stderr,
-            "--coverage %s: no coverage (expected a file of lines such as 42 WAFER_MISSING 3, or none)\n",
-            path);
-    return false;
-}
-
-/* This test runs before the first client: at the end it would be too late. */
-static bool check_coverage(const char *path) {
-    uint64_t earlier[WH_HOST_NUMBERS] = {0};
-    return add_coverage(path, earlier);
-}
-
 /* Tests before the first client if each output that is written at the end can be written. */
 static bool are_writable(const arguments_t *arguments) {
     const wh_run_files_t *files = &arguments->run.files;
@@ -353,11 +156,6 @@ static bool are_writable(const arguments_t *arguments) {
     return good;
 }
 
-static bool keep_coverage(const wh_host_t *host, const char *path) {
-    return !path || (add_coverage(path, host->shown) &&
-                     wh_file_write("--coverage", path, write_coverage, host->shown, NULL));
-}
-
 static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signals_t *signals) {
     char *command = NULL;
     size_t size = 0;
@@ -370,9 +168,9 @@ static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signa
     wh_signals_finish(signals);
     FILE *out = wh_memory_need(open_memstream(&command, &size));
     fputs("serve", out);
-    for (size_t i = 0; i < arguments->dialects.count; ++i) {
+    for (size_t i = 0; i < arguments->ports.dialects.count; ++i) {
         fputs(" --dialect ", out);
-        wh_output_word(out, arguments->dialects.items[i]);
+        wh_output_word(out, arguments->ports.dialects.items[i]);
     }
     (void)fclose(out);
     arguments->run.command = command;
@@ -494,14 +292,15 @@ static bool run_host(served_t *served, arguments_t *arguments) {
     say_counters(&served->host);
     say_rate(&served->host, arguments);
     const bool reported = write_report(arguments, &served->session, &served->signals);
-    const bool covered = keep_coverage(&served->host, arguments->coverage);
+    const bool covered = wh_serve_coverage_keep(arguments->coverage, &served->host);
     return close_transcript(&served->host, arguments) && reported && covered;
 }
 
 /* Opens all ports and the transcript, and says so. */
 static bool listen_all(served_t *served, const arguments_t *arguments, int argc, char **argv) {
     wh_host_t *host = &served->host;
-    if (!open_ports(host, arguments, argc, argv) || !wh_serve_beside_open(&arguments->beside, host)) {
+    if (!wh_serve_ports_open(&arguments->ports, host, argc, argv) ||
+        !wh_serve_beside_open(&arguments->beside, host)) {
         return false;
     }
     for (size_t i = 0; i < host->count; ++i) {
@@ -534,7 +333,7 @@ static bool may_begin(served_t *served, arguments_t *arguments) {
     }
     served->host.allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
     return open_page(served, arguments) && wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
-           check_coverage(arguments->coverage) && are_writable(arguments);
+           wh_serve_coverage_check(arguments->coverage) && are_writable(arguments);
 }
 
 static int serve(arguments_t *arguments, int argc, char **argv) {
@@ -579,11 +378,7 @@ int wh_app_serve(int argc, char **argv) {
                            ? serve(&arguments, argc, argv)
                            : WH_EXIT_USAGE;
     wh_layout_arguments_free(&arguments.layout);
-    wh_option_list_free(&arguments.dialects);
-    wh_option_list_free(&arguments.mechanisms);
-    wh_option_list_free(&arguments.units);
-    wh_option_list_free(&arguments.tcp);
-    wh_option_list_free(&arguments.pty);
+    wh_serve_ports_free(&arguments.ports);
     wh_option_list_free(&arguments.beside.allowed);
     return status;
 }

@@ -178,8 +178,10 @@ static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *la
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
         return false;
     }
+    const bool has_board = wh_sim_board_is_wanted(&arguments->board);
+    const wh_live_sim_driver_t driver = {has_board, has_board && !arguments->board.lockstep ? 1 : 0};
     return open_outputs(&served->outputs, arguments->outputs, layout->machine.gripper_count) &&
-           wh_live_sim_open(&served->live, &arguments->page, &served->simulation);
+           wh_live_sim_open(&served->live, &arguments->page, &served->simulation, &driver);
 }
 
 static void close_served(served_t *served) {

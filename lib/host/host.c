@@ -181,6 +181,13 @@ static void on_begin(void *user, const wh_layout_t *layout) {
     }
 }
 
+static void on_set_back(void *user, const wh_command_t *command, const wh_state_t *state) {
+    const wh_host_t *host = user;
+    if (host->next.set_back) {
+        host->next.set_back(host->next.user, command, state);
+    }
+}
+
 static void on_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command) {
     const wh_host_t *host = user;
     if (host->next.tell) {
@@ -199,6 +206,7 @@ wh_mcs_listener_t wh_host_listener(wh_host_t *host) {
     return (wh_mcs_listener_t){.slice = on_slice,
                                .boundary = on_boundary,
                                .begins = on_begin,
+                               .set_back = on_set_back,
                                .tell = on_news,
                                .turn = on_turn,
                                .user = host};

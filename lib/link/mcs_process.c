@@ -23,6 +23,11 @@ void wh_mcs_process_publish(wh_mcs_process_t *control, const waferhand_mcs *mess
     if (size > 0) {
         (void)wh_node_publish(control->node, WH_CHANNEL_MCS, control->encoded, (size_t)size);
     }
+    const bool is_answer = message->request != 0 &&
+                           (message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED);
+    if (is_answer && control->owner.answered) {
+        control->owner.answered(control->owner.user, message);
+    }
 }
 
 /* A message with the present state. `request` is the request that it answers or continues; 0: none. */

@@ -46,6 +46,8 @@ typedef struct {
     const char *busy; /* why requests other than STATUS, VERSION and STOP are refused; null: they wait */
     void (*stops)(void *user); /* called at a STOP, which then does not end the running command */
     void (*waits)(void *user); /* called within an exchange, each 2 ms of waiting for the simulator */
+    void (*asked)(void *user, int64_t request, const char *line); /* a new request has come */
+    void (*answered)(void *user, const waferhand_mcs *message);   /* one is answered */
     void *user;
 } wh_mcs_process_owner_t;
 
@@ -104,6 +106,9 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
 /* Sends a heartbeat to the simulator and handles messages from others. It is for times when nothing moves,
  * and between two slices that are far apart. Call it at least every 100 ms. */
 void wh_mcs_process_idle(wh_mcs_process_t *control);
+
+/* Takes a request of this process, for any run, as if it had come on WAFERHAND_REQUEST. `number` is not 0. */
+void wh_mcs_process_ask(wh_mcs_process_t *control, int64_t number, const char *line);
 
 /* Takes the next request out of the queue, if there is one. This request is then being executed, until
  * wh_mcs_process_answer. A request for another run or layout is told so, and the next one is taken. */

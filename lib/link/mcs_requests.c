@@ -284,7 +284,12 @@ static void take_request(wh_mcs_process_t *control, const waferhand_request *mes
     const wh_mcs_process_request_t *pending = find_pending(control, message->seq);
     if (answer || pending) {
         take_again(control, message, answer, pending);
-    } else if (turn_away_misdirected(control, &request, message->command_line)) {
+        return;
+    }
+    if (control->owner.asked) {
+        control->owner.asked(control->owner.user, message->seq, message->command_line);
+    }
+    if (turn_away_misdirected(control, &request, message->command_line)) {
         return;
     } else if (strlen(message->command_line) >= sizeof request.line) {
         turn_away(control, message->seq, message->command_line, WH_STATUS_BAD_ARGUMENT,
@@ -293,6 +298,11 @@ static void take_request(wh_mcs_process_t *control, const waferhand_request *mes
         snprintf(request.line, sizeof request.line, "%s", message->command_line);
         take_new(control, &request);
     }
+}
+
+void wh_mcs_process_ask(wh_mcs_process_t *control, int64_t number, const char *line) {
+    const waferhand_request message = {.seq = number, .command_line = wh_link_borrowed(line)};
+    take_request(control, &message);
 }
 
 /* The sender learns of it if the request's number can be read. */

@@ -79,6 +79,8 @@ typedef struct {
     /* A cell was set up, or is gone back to because another could not be set up. The layout of the run before
      * is still there, and goes when this has returned. */
     void (*begins)(void *user, const wh_layout_t *layout);
+    /* RESTORE or UNDO has put this state back, after this command. */
+    wh_slice_listener_t *set_back;
     /* Like those of the partners. */
     void (*tell)(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command);
     void (*turn)(void *user, const wh_mcs_t *mcs, const char *what);

@@ -182,6 +182,10 @@ static int restore_state(lua_State *L) {
     }
     put_back(mcs, saved);
     put_clocks_back(L, mcs, 1);
+    const wh_mcs_listener_t *listener = &mcs->wanted.listener;
+    if (listener->set_back) {
+        listener->set_back(listener->user, &mcs->command, &mcs->state);
+    }
     return 0;
 }
 

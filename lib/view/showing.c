@@ -114,6 +114,13 @@ void wh_showing_tell(wh_showing_t *showing, wh_news_t *news) {
     }
 }
 
+static wh_glimpse_t *copy_look(const wh_showing_t *showing) {
+    wh_glimpse_t *look = wh_array_new(1, sizeof *look);
+    look->wafers = wh_array_new(showing->state->wafer_count, sizeof(wh_wafer_t));
+    copy(showing, look);
+    return look;
+}
+
 static void tell_events(wh_showing_t *showing) {
     const wh_state_t *state = showing->state;
     wh_news_t *news = wh_news_make(WH_NEWS_EVENTS, state->utime, NULL, NULL);
@@ -124,12 +131,17 @@ static void tell_events(wh_showing_t *showing) {
     for (size_t i = 0; i < state->event_count; ++i) {
         news->seats[i] = wh_seat_of(showing->layout, state, &state->events[i]);
     }
-    news->look = wh_array_new(1, sizeof *news->look);
-    news->look->wafers = wh_array_new(state->wafer_count, sizeof(wh_wafer_t));
-    copy(showing, news->look);
+    news->look = copy_look(showing);
     news->look->state.events = news->events;
     news->look->state.event_count = news->event_count;
     wh_showing_tell(showing, news);
+}
+
+static void take_slice(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state) {
+    showing->last = state->seq;
+    showing->axis_count = command->axis_count < WH_AXES ? command->axis_count : WH_AXES;
+    memcpy(showing->axes, command->axes, showing->axis_count * sizeof *showing->axes);
+    showing->state = state;
 }
 
 void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state) {
@@ -140,10 +152,7 @@ void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const 
         ++showing->epoch;
         ++showing->eventful; /* any wafer may be elsewhere */
     }
-    showing->last = state->seq;
-    showing->axis_count = command->axis_count < WH_AXES ? command->axis_count : WH_AXES;
-    memcpy(showing->axes, command->axes, showing->axis_count * sizeof *showing->axes);
-    showing->state = state;
+    take_slice(showing, command, state);
     if (state->event_count > 0) {
         ++showing->eventful;
         tell_events(showing);
@@ -151,6 +160,19 @@ void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const 
     if (__atomic_load_n(&showing->is_asked, __ATOMIC_RELAXED)) {
         hand_over(showing);
     }
+}
+
+void wh_showing_set_back(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state) {
+    if (!state->physics) {
+        return;
+    }
+    ++showing->epoch;
+    ++showing->eventful;
+    take_slice(showing, command, state);
+    wh_news_t *news = wh_news_make(WH_NEWS_SET_BACK, state->utime, NULL, NULL);
+    news->look = copy_look(showing);
+    wh_showing_tell(showing, news);
+    hand_over(showing);
 }
 
 void wh_showing_rest(wh_showing_t *showing) {

@@ -31,6 +31,7 @@ typedef struct {
 
 typedef enum {
     WH_NEWS_EVENTS,         /* a slice with events: `look` has them */
+    WH_NEWS_SET_BACK,       /* the run was set back to the state of `look` */
     WH_NEWS_COMMAND_BEGINS, /* task, line, text, begin_s */
     WH_NEWS_COMMAND_ENDED,  /* likewise; end_s, error, more: its message */
     WH_NEWS_EXPECTED,       /* line, text, good */
@@ -39,6 +40,7 @@ typedef enum {
     WH_NEWS_GOES_ON,        /* task waits no longer */
     WH_NEWS_HELD,           /* good: a HOLD stands, of the robots in `text` or, empty, of all that runs */
     WH_NEWS_FRAME,          /* text at port `more`; good: it came from the host */
+    WH_NEWS_ANSWER,         /* text: JSON, one line, for the page that has asked */
     WH_NEWS_ENDED           /* the run is over: good, or text: why not */
 } wh_news_kind_t;
 
@@ -72,6 +74,9 @@ void wh_showing_close(wh_showing_t *showing);
 
 /* A slice that was played. `state` must stay readable until the next call or wh_showing_forget. */
 void wh_showing_slice(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state);
+
+/* The run was set back to this state, which must stay readable likewise. */
+void wh_showing_set_back(wh_showing_t *showing, const wh_command_t *command, const wh_state_t *state);
 
 /* Nothing moves for now: the last slice is handed over, whether asked for or not. */
 void wh_showing_rest(wh_showing_t *showing);

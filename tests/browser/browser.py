@@ -205,9 +205,9 @@ class Browser:
 
     def key(self, key, shift=False, code=None):
         """A key as a keyboard sends it; characters are typed."""
-        text = key if len(key) == 1 else None
+        text = key if len(key) == 1 else {"Enter": "\r"}.get(key)
         down = dict(type="keyDown", key=key, code=code or key, modifiers=8 if shift else 0)
-        named = {"ArrowLeft": 37, "ArrowRight": 39, "Home": 36, "End": 35, "Tab": 9, "Escape": 27, " ": 32}
+        named = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Enter": 13, "Home": 36, "End": 35, "Tab": 9, "Escape": 27, " ": 32}
         if key in named:
             down["windowsVirtualKeyCode"] = named[key]
         if text:

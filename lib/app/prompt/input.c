@@ -104,10 +104,11 @@ void wh_input_tell_stop(const wh_input_t *input) {
 wh_input_event_t wh_input_wait(const wh_input_t *input) {
     static const struct timespec tenth = {0, 100000000};
     struct pollfd polled[] = {{.fd = input->watch.fd, .events = POLLIN},
-                              {.fd = STDIN_FILENO, .events = POLLIN}};
+                              {.fd = STDIN_FILENO, .events = POLLIN},
+                              {.fd = input->watch.other, .events = POLLIN}};
     for (;;) {
         /* With the mask as it was before, so that ppoll ends with EINTR when a held signal arrives. */
-        const int ready = ppoll(polled, 2, &tenth, &signals.mask_before);
+        const int ready = ppoll(polled, 3, &tenth, &signals.mask_before);
         if (ready < 0) {
             return errno == EINTR ? WH_INPUT_SIGNAL : WH_INPUT_BROKEN;
         }

@@ -17,12 +17,12 @@
 #include "../../mcs/session.h"
 
 /* A watch that the prompt serves besides the input, such as LCM. While the prompt waits for input, and never
- * during a command, it calls `look` whenever it wakes: when `fd` can be read or has failed, when there is
- * input, and at least every 100 ms. `look` must read the descriptor, or it is called again at once. It may
- * execute commands of the session; signals stop them like those of the prompt. `stop` is called when a signal
- * has come during a command or a look: waiting work must then not begin. */
+ * during a command, it calls `look` whenever it wakes: when `fd` or `other` (-1: none) can be read or has
+ * failed, when there is input, and at least every 100 ms. `look` must read them, or it is called again at
+ * once. It may execute commands of the session; signals stop them like those of the prompt. `stop` is called
+ * when a signal has come during a command or a look: waiting work must then not begin. */
 typedef struct {
-    int fd;
+    int fd, other;
     void (*look)(void *user);
     void (*stop)(void *user);
     void *user;

@@ -10,6 +10,8 @@
     /* The direction from the middle to the eye, in each view that stands still. */
     const VIEWS = { whole: [0.62, -0.75, 0.62], top: [0, -0.0005, 1], side: [0, -1, 0.0005] };
 
+    const AWAY = -50; /* m: wafers whose carrier is away, and those that were taken out, wait far below the cell */
+
     /* The corners of all meshes' boxes; the picture has to contain them. */
     function corners(scene) {
         const found = [];
@@ -24,7 +26,7 @@
                 }
             }
         });
-        return found;
+        return found.filter((corner) => corner.z > AWAY);
     }
 
     /* The distance from which, looking along `back` at `middle`, every corner is in the picture, and a better middle of the

@@ -1,5 +1,5 @@
-/* Commands of a live page: pause, steps and pace of a run; lines of a tester beside the hosts. The token comes behind the
- * page's address, and is kept from there on by this window alone. */
+/* Commands of a live page: pause, steps and pace of a run; lines of a tester beside the hosts, or of an operator (operator.js).
+ * The token comes behind the page's address, and is kept from there on by this window alone. */
 (function (W) {
     'use strict';
 
@@ -18,10 +18,10 @@
         return sessionStorage.getItem(KEY);
     }
 
-    const tell = (text, kind) => {
+    function tell(text, kind) {
         control.said.textContent = text;
         control.said.className = kind;
-    };
+    }
 
     /* Promises the answer, or null if it was refused. */
     async function ask(request) {
@@ -29,7 +29,9 @@
             const answer = await fetch('control', { method: 'POST', headers: { 'Content-Type': 'application/json' },
                 body: JSON.stringify(Object.assign({ token: control.token }, request)) });
             const told = await answer.json();
-            tell(told.ok ? '' : told.text, told.ok ? 'note' : 'failure');
+            if (!told.ok || !('complete' in request)) {
+                tell(told.ok ? '' : told.text, told.ok ? 'note' : 'failure');
+            }
             return told.ok ? told : null;
         } catch (error) {
             tell(`not sent: ${error.message}`, 'failure');
@@ -40,11 +42,23 @@
     const button = (id, text, title, act) => W.element('button', { type: 'button', id, title, click: act }, text);
 
     function rates() {
-        const select = W.element('select', { id: 'rate', 'aria-label': 'Pace of the cell',
+        const select = control.rate = W.element('select', { id: 'rate', 'aria-label': 'Pace of the cell',
             change: () => ask({ rate: Number(select.value) }) });
-        RATES.concat(0).forEach((rate) => select.append(W.element('option', { value: rate, selected: rate === 1 },
+        RATES.concat(0).forEach((rate) => select.append(W.element('option', { value: rate },
             rate > 0 ? `${rate}\u00d7` : 'as fast as it can')));
         return select;
+    }
+
+    /* The pace may be one that is not listed, of the command line. */
+    function showRate(rate) {
+        const text = String(typeof rate === 'number' ? rate : 0);
+        const { rate: select } = control;
+        if (select && document.activeElement !== select) {
+            if (!Array.from(select.options).some((option) => option.value === text)) {
+                select.append(W.element('option', { value: text }, `${W.figure(rate)}\u00d7`));
+            }
+            select.value = text;
+        }
     }
 
     function ofRun() {
@@ -64,12 +78,13 @@
         return [select, button('hold', 'Hold', why, () => ask({ hold: which() })),
             button('continue', 'Continue', 'It goes on', () => ask({ continue: which() }))];
     }
+    /* A name as the prompt reads it. */
+    const quoted = (name) => (/^[\w./-]+$/.test(name) ? name : `"${name.replace(/["\\]/g, '\\$&')}"`);
 
     const LINES = ['STATUS', 'ALARM WAFER_MISSING', 'CLEAR'];
 
     /* The lines that a reader may begin with: each fault of each gripper, and where the wafers are. */
     function suggestions(doc, faults) {
-        const quoted = (name) => (/^\w+$/.test(name) ? name : `"${name}"`);
         const lines = LINES.concat(doc.names.wafers.map((name) => `WHERE ${quoted(name)}`),
             ...doc.names.grippers.map((name) => faults.map((kind) => `FAULT ${kind} gripper=${quoted(name)}`)));
         return W.element('datalist', { id: 'lines' }, ...lines.map((line) => W.element('option', { value: line })));
@@ -110,6 +125,7 @@
 
     function hear(state) {
         control.isPaused = state.paused;
+        showRate(state.rate);
         control.row.hidden = !!state.over || !!state.lost;
         if (control.pause) {
             control.pause.textContent = state.paused ? 'Go on' : 'Pause';
@@ -124,13 +140,20 @@
             return;
         }
         control.said = W.element('span', { class: 'note', role: 'status', id: 'answer' });
-        const parts = state.control === 'run' ? ofRun().concat(holds(state)) : ofTester(doc, state.faults || []);
-        control.row = W.element('div', { class: 'row', id: 'control', role: 'group', 'aria-label': 'Commands to the program' },
-            ...parts, rates(), control.said);
+        const isPrompt = state.control === 'prompt';
+        const held = state.paces ? [...ofRun(), ...(isPrompt ? [] : holds(state)), rates()] : [];
+        const parts = state.control === 'tester' ? [...ofTester(doc, state.faults || []), rates()] : held;
+        const rows = isPrompt ? W.operator.start(doc, state.faults || []) : [];
+        control.row = W.element('div', { id: 'control', role: 'group', 'aria-label': 'Commands to the program' },
+            W.element('div', { class: 'row' }, ...parts, control.said), ...rows);
         document.getElementById('head').append(control.row);
         W.live.on(hear);
         hear(state);
+        if (isPrompt) {
+            W.operator.begin(doc);
+        }
     };
 
+    Object.assign(control, { ask, tell, button, quoted });
     W.control = control;
 }(window.Waferhand));

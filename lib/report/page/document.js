@@ -27,10 +27,13 @@
     /* A wafer that a carrier brings or takes is no fault. */
     const kindOf = (event) => (event.fault_kind === 'wafer_placed' ? event.fault_kind : event.kind);
 
-    /* Events with their time in seconds, in order; several may share one time. */
+    /* An event with its time in seconds. */
+    const timed = (event) => Object.assign({ t: event.utime / 1e6 }, event, { kind: kindOf(event) });
+
+    /* Events in order; several may share one time. */
     function events(run) {
-        return list(run.events).filter((event) => event && typeof event.utime === 'number')
-            .map((event) => Object.assign({ t: event.utime / 1e6 }, event, { kind: kindOf(event) })).sort((a, b) => a.t - b.t);
+        return list(run.events).filter((event) => event && typeof event.utime === 'number').map(timed)
+            .sort((a, b) => a.t - b.t);
     }
 
     /* The last time in the document, for one that does not give its length. */
@@ -92,5 +95,5 @@
         }
     }
 
-    W.document = { read, complete, unpack };
+    W.document = { read, complete, unpack, timed };
 }(window.Waferhand));

@@ -125,7 +125,7 @@
         Object.entries(more).forEach(([name, { from, list }]) => {
             doc.run[name].splice(from, Infinity, ...list);
             if (name === 'events') {
-                doc.events.splice(from, Infinity, ...list.map((event) => Object.assign({ t: event.utime / 1e6 }, event)));
+                doc.events.splice(from, Infinity, ...list.map(W.document.timed));
             }
         });
     }

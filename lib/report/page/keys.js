@@ -48,7 +48,7 @@
     /* True for keys that the focused element needs itself; the scrubber's keys do the same as the page's. */
     function isTaken(target, key) {
         const kind = target.tagName === 'INPUT' ? target.type : target.tagName;
-        return kind === 'TEXTAREA' || kind === 'SELECT' || (target.id !== 'scrubber' && (OWN[kind] || []).includes(key));
+        return ['TEXTAREA', 'SELECT', 'text'].includes(kind) || (target.id !== 'scrubber' && (OWN[kind] || []).includes(key));
     }
 
     function pressed(event) {

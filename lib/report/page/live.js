@@ -52,6 +52,8 @@
             grown(doc, what);
         } else if (kind === 'anew') {
             anew();
+        } else if (kind === 'answer') {
+            W.operator.hear(what);
         } else {
             live.state = what;
             live.heard.forEach((listener) => listener(what));

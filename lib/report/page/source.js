@@ -2,8 +2,8 @@
  * over (given.js). A page that plays its run again shows what it carries, then what the next runs hand over (rerun.js). The
  * page of a live cell has stream.js in its place, and no other part asks which. A source has
  *   take()          promises the document, or fails with the reason
- *   follow(heard)   calls `heard(kind, what)` from then on: "frame", "growth" and "anew" with their object, "state" with what is
- *                   known of the program and of the connection. A file never calls it. */
+ *   follow(heard)   calls `heard(kind, what)` from then on: "frame", "growth", "anew" and "answer" with their object, "state"
+ *                   with what is known of the program and of the connection. A file never calls it. */
 (function (W) {
     'use strict';
 

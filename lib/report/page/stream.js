@@ -53,7 +53,7 @@
     /* The browser connects again by itself, and tells from where on. Once it has given up, so do we. */
     function connect() {
         own.events = new EventSource(`stream?from=${own.next}&id=${own.id}`);
-        ['frame', 'growth', 'anew'].forEach((kind) => own.events.addEventListener(kind, (event) => told(kind, event)));
+        ['frame', 'growth', 'anew', 'answer'].forEach((kind) => own.events.addEventListener(kind, (event) => told(kind, event)));
         own.events.addEventListener('open', () => own.heard('state', known({ lost: false })));
         own.events.addEventListener('error', (event) => {
             waiting('no answer');

@@ -38,7 +38,7 @@ class Served:
                 self.ready.set()
         self.ready.set()
 
-    def said(self, text, seconds=20):
+    def said(self, text, seconds=60):
         """Waits until standard error has this text."""
         end = time.monotonic() + seconds
         while not any(text in line for line in self.lines):
@@ -92,6 +92,17 @@ class Served:
             time.sleep(0.02)
         raise AssertionError("no document: " + text)
 
+    def until(self, condition, seconds=60):
+        """The first document for which this is true."""
+        end = time.monotonic() + seconds
+        while True:
+            got = self.document()
+            if condition(got):
+                return got
+            if time.monotonic() > end:
+                raise AssertionError(f"never so: {got['state']} at {got['document']['duration_s']} s")
+            time.sleep(0.02)
+
 
 class Stream:
     """A reader of the feed; `told` are (number, kind, object)."""
@@ -138,7 +149,7 @@ class Stream:
             if "event" in fields:
                 self.told.append((int(fields["id"]), fields["event"], json.loads(fields["data"])))
 
-    def wait(self, condition, seconds=20):
+    def wait(self, condition, seconds=60):
         end = time.monotonic() + seconds
         while not condition(self.told):
             if time.monotonic() > end:

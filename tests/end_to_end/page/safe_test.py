@@ -140,16 +140,25 @@ class Safe(unittest.TestCase):
     def test_streams_are_counted(self):
         """As many as there may be; the next is told so."""
         streams = [page.Stream(self.served, {}) for _ in range(40)]
-        time.sleep(0.5)
-        refused = sum(stream.raw.startswith(b"HTTP/1.1 503") or b"too many pages" in stream.raw for stream in streams)
+        def is_refused(stream):
+            return stream.raw.startswith(b"HTTP/1.1 503") or b"too many pages" in stream.raw
+
+        end = time.monotonic() + 60
+        while not all(stream.told or is_refused(stream) for stream in streams) and time.monotonic() < end:
+            time.sleep(0.02)
+        refused = sum(is_refused(stream) for stream in streams)
         told = sum(len(stream.told) > 0 for stream in streams)
         for stream in streams:
             stream.close()
         self.assertEqual((told, refused), (32, 8))
-        time.sleep(6)
-        again = page.Stream(self.served, {})
-        again.wait(lambda all_told: all_told)
-        again.close()
+        told, end = [], time.monotonic() + 60
+        while not told and time.monotonic() < end:
+            again = page.Stream(self.served, {})
+            while not again.told and not is_refused(again) and time.monotonic() < end:
+                time.sleep(0.02)
+            told = list(again.told)
+            again.close()
+        self.assertTrue(told)
 
 
 class Open(unittest.TestCase):

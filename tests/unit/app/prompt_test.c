@@ -66,7 +66,7 @@ static void count_stop(void *user) {
 }
 
 static void open_prompt(void) {
-    const wh_prompt_watch_t watch = {other[0], take_request, count_stop, &calls};
+    const wh_prompt_watch_t watch = {other[0], -1, take_request, count_stop, &calls};
     prompt = wh_prompt_open(&session, &watch);
 }
 
@@ -101,7 +101,7 @@ static void leave_at_the_third_look(void *user) {
 
 /* Even if nothing comes, the watch is called every 100 ms. */
 static void the_watch_is_called_in_silence(void **state) {
-    const wh_prompt_watch_t watch = {other[0], leave_at_the_third_look, count_stop, NULL};
+    const wh_prompt_watch_t watch = {other[0], -1, leave_at_the_third_look, count_stop, NULL};
     struct timespec begin, end;
     (void)state;
     prompt = wh_prompt_open(&session, &watch);
@@ -133,7 +133,7 @@ static void a_signal_descriptor_wakes_it(void **state) {
     sigaddset(&mask, SIGTERM);
     sigprocmask(SIG_BLOCK, &mask, NULL);
     signal_descriptor = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
-    const wh_prompt_watch_t watch = {signal_descriptor, take_signal, count_stop, NULL};
+    const wh_prompt_watch_t watch = {signal_descriptor, -1, take_signal, count_stop, NULL};
     prompt = wh_prompt_open(&session, &watch);
     raise(SIGTERM);
     assert_int_equal(wh_prompt_run(prompt), 0);
@@ -168,7 +168,7 @@ static void take_long_request(void *user) {
 
 /* A signal also stops a watch's command, and then belongs to the prompt. The watch is told about it. */
 static void signal_during_a_request(void **state) {
-    const wh_prompt_watch_t watch = {other[0], take_long_request, count_stop, NULL};
+    const wh_prompt_watch_t watch = {other[0], -1, take_long_request, count_stop, NULL};
     const struct itimerspec soon = {{0, 0}, {0, 100000000}};
     struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
     timer_t timer;
