@@ -28,6 +28,7 @@ typedef struct {
     int32_t last; /* step of the best schedule */
     wh_flow_best_t *best;
     int64_t left_out_us; /* the least bound of the nodes that had no room */
+    bool is_relaxed;     /* see relax() */
 } search_t;
 
 static int64_t later(int64_t a, int64_t b) {
@@ -35,6 +36,40 @@ static int64_t later(int64_t a, int64_t b) {
 }
 
 /* -------------------------------------------------------------------------------------------------- nodes */
+
+/* `tool` is the problem's. In stations without places nothing is exchanged. */
+static bool is_swap_short(const wh_flow_tool_t *tool, size_t robot, size_t station) {
+    const size_t of = wh_flow_of(tool, (int32_t)robot, (int32_t)station);
+    return tool->serves[of] && tool->robots[robot].arms > 1 &&
+           tool->stations[station].first_place != WH_BEST_PLACES &&
+           tool->swap_us[of] < tool->pick_us[of] + tool->place_us[of];
+}
+
+/* An exchange with two arms may take less than a pick and a placing. No node has one. If picks and placings
+ * are so much shorter that both together take no longer than it, they can stand in for each exchange: then
+ * no schedule with exchanges is below the bound either. */
+static void relax(wh_flow_tool_t *tool) {
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        for (size_t s = 0; s < tool->station_count; ++s) {
+            const size_t of = wh_flow_of(tool, (int32_t)r, (int32_t)s);
+            const int64_t swap_us = tool->swap_us[of];
+            if (is_swap_short(tool, r, s)) {
+                tool->place_us[of] = tool->place_us[of] < swap_us ? tool->place_us[of] : swap_us;
+                tool->pick_us[of] = swap_us - tool->place_us[of];
+            }
+        }
+    }
+}
+
+static bool has_short_swap(const wh_flow_tool_t *tool) {
+    bool has = false;
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        for (size_t s = 0; s < tool->station_count; ++s) {
+            has = has || is_swap_short(tool, r, s);
+        }
+    }
+    return has;
+}
 
 /* The node's number of a place of the tool: `places` maps them. */
 static void open_problem(problem_t *problem, wh_flow_tool_t *own, const wh_flow_tool_t *tool,
@@ -439,38 +474,64 @@ static size_t count_levels(const problem_t *problem) {
     return levels;
 }
 
-void wh_flow_best(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, size_t width,
-                  wh_flow_best_progress_t *progress, void *user, wh_flow_best_t *best) {
-    search_t search = {.width = width, .best = best, .last = WH_FLOW_NONE, .left_out_us = WH_FLOW_NEVER};
-    wh_flow_tool_t own;
-    node_t root;
-    *best = (wh_flow_best_t){.makespan_us = WH_FLOW_NEVER};
-    open_problem(&search.problem, &own, tool, plan);
-    open_root(&search, &root);
-    best->bound_us = root.bound_us;
-    add_node(&search, 0, &root);
-    const size_t levels = count_levels(&search.problem);
-    for (size_t level = 0; level < levels && best->makespan_us > best->bound_us; ++level) {
-        level_t *of = &search.levels[level % LEVELS];
-        thin(&search, of);
+static void search_levels(search_t *search, wh_flow_best_progress_t *progress, void *user) {
+    const size_t levels = count_levels(&search->problem);
+    for (size_t level = 0; level < levels && search->best->makespan_us > search->best->bound_us; ++level) {
+        level_t *of = &search->levels[level % LEVELS];
+        thin(search, of);
         for (size_t i = 0; i < of->count; ++i) {
-            expand(&search, level, &of->nodes[i]);
+            expand(search, level, &of->nodes[i]);
         }
         of->count = 0;
         if (progress) {
             progress(user, (double)(level + 1) / (double)levels);
         }
     }
-    const int64_t open_us = search.left_out_us < best->makespan_us ? search.left_out_us : best->makespan_us;
+}
+
+static void search_all(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, search_t *search,
+                       wh_flow_best_progress_t *progress, void *user) {
+    wh_flow_best_t *best = search->best;
+    wh_flow_tool_t own;
+    node_t root;
+    *best = (wh_flow_best_t){.makespan_us = WH_FLOW_NEVER};
+    open_problem(&search->problem, &own, tool, plan);
+    best->lacks_swaps = has_short_swap(&own);
+    if (search->is_relaxed) {
+        relax(&own);
+    }
+    open_root(search, &root);
+    best->bound_us = root.bound_us;
+    add_node(search, 0, &root);
+    search_levels(search, progress, user);
+    const int64_t open_us = search->left_out_us < best->makespan_us ? search->left_out_us : best->makespan_us;
     best->bound_us = open_us != WH_FLOW_NEVER && open_us > best->bound_us ? open_us : best->bound_us;
-    if (search.last != WH_FLOW_NONE) {
-        write_lists(&search, tool->robot_count);
+    if (search->last != WH_FLOW_NONE) {
+        write_lists(search, tool->robot_count);
     }
     for (size_t i = 0; i < LEVELS; ++i) {
-        free(search.levels[i].nodes);
+        free(search->levels[i].nodes);
     }
-    free(search.steps);
+    free(search->steps);
     wh_flow_tool_close(&own);
+}
+
+void wh_flow_best(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, size_t width,
+                  wh_flow_best_progress_t *progress, void *user, wh_flow_best_t *best) {
+    search_t search = {.width = width, .best = best, .last = WH_FLOW_NONE, .left_out_us = WH_FLOW_NEVER};
+    search_all(tool, plan, &search, progress, user);
+    if (best->lacks_swaps) {
+        wh_flow_best_t relaxed;
+        search = (search_t){.width = width,
+                            .best = &relaxed,
+                            .last = WH_FLOW_NONE,
+                            .left_out_us = WH_FLOW_NEVER,
+                            .is_relaxed = true};
+        search_all(tool, plan, &search, progress, user);
+        best->bound_us = relaxed.bound_us;
+        best->nodes += relaxed.nodes;
+        wh_flow_best_close(&relaxed, tool);
+    }
 }
 
 void wh_flow_best_close(wh_flow_best_t *best, const wh_flow_tool_t *tool) {

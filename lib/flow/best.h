@@ -6,6 +6,10 @@
  * other node beats in every time. If a level never had more than `width` nodes, or if the best schedule meets
  * the least bound of all that was left out, it is optimal.
  *
+ * No schedule that is found has an exchange with two arms: keeping wafers on both arms stands in for it. If
+ * exchanges take less than a pick and a placing, that is said, and a second search finds a bound that no
+ * schedule with exchanges is below either.
+ *
  * Small: at most 8 wafers, which lie there at time 0, 4 robots, and 24 places. The robots may keep wafers on
  * two arms. A station to which several robots come has one slot. There are no locks, doors, cleans, windows,
  * failures, takt, and no places that are kept empty. */
@@ -23,6 +27,7 @@ typedef struct {
     int64_t bound_us;      /* no schedule takes less */
     wh_flow_list_t *lists; /* by robot: that schedule, as a rule; null: none was found */
     uint64_t nodes;        /* that were looked at */
+    bool lacks_swaps;      /* exchanges are shorter than a pick and a placing, and the lists have none */
 } wh_flow_best_t;
 
 /* Hears how far the search is, up to 1. */

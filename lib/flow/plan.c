@@ -7,6 +7,13 @@
 
 #include "../text/array.h"
 
+static void close_names(wh_flow_names_t *names) {
+    for (size_t i = 0; i < names->count; ++i) {
+        free(names->items[i]);
+    }
+    free(names->items);
+}
+
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     for (size_t i = 0; plan->backs && i < tool->station_count; ++i) {
         free(plan->backs[i].stations);
@@ -34,6 +41,7 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     }
     free(plan->turns);
     free(plan->lists);
+    close_names(&plan->asked);
     memset(plan, 0, sizeof *plan);
 }
 

@@ -48,12 +48,15 @@ typedef enum { WH_FLOW_TRANSFER, WH_FLOW_KEEP, WH_FLOW_BRING, WH_FLOW_SWAP, WH_F
 typedef struct {
     wh_flow_do_t what;
     int32_t from, to; /* stations; the lock is `to` */
-    int32_t wafer;    /* WH_FLOW_NONE: the first that entered, or was kept */
+    int32_t wafer;    /* WH_FLOW_NONE: the first that entered, or was kept; see wh_flow_plan_t's `asked` */
     wh_flow_side_t side;
     int32_t out;    /* of a swap: the wafer that comes out */
     int32_t slot;   /* to which a wafer is brought; 0: any */
     int32_t behind; /* so many picks, places and swaps of the station come first */
 } wh_flow_line_t;
+
+/* A line's wafer until it is known: the number of its name. It is its own inverse. */
+#define WH_FLOW_ASKED(number) (-2 - (number))
 
 /* A transfer from nowhere to nowhere. */
 #define WH_FLOW_NO_LINE                                                                                      \
@@ -65,6 +68,11 @@ typedef struct {
     wh_flow_line_t *lines;
     size_t count, capacity;
 } wh_flow_list_t;
+
+typedef struct {
+    char **items;
+    size_t count, capacity;
+} wh_flow_names_t;
 
 /* A lock's turn behind so many picks, places and swaps in it. */
 typedef struct {
@@ -125,6 +133,7 @@ typedef struct {
     size_t down_count;
     wh_flow_rule_t rule;
     wh_flow_list_t *lists;  /* by robot, for WH_FLOW_LISTS */
+    wh_flow_names_t asked;  /* in lists, whose wafers are not known yet: WH_FLOW_ASKED stands for each */
     wh_flow_turns_t *turns; /* by station, of locks that turn by a list of their own; null: none does */
     bool is_given;          /* each step was carried out by somebody, from a station into itself as well */
     wh_flow_own_rule_t own;

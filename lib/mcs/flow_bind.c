@@ -1,7 +1,10 @@
 /* The wafers of a flow in a cell with axes are those that lie there. */
 #include <lauxlib.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "../layout/ports.h"
 #include "../text/array.h"
 #include "flow_played.h"
 
@@ -199,6 +202,71 @@ static bool check_ends(lua_State *L, const wh_flow_played_t *played) {
     return true;
 }
 
+/* True if a wafer whose carrier is still to come has this name: by the carrier and the slot, or, where
+ * nobody has said which carrier that will be, by the lot. */
+static bool is_called(const wh_flow_played_t *played, int32_t wafer, const char *name) {
+    const wh_flow_plan_t *plan = &played->flow->plan;
+    const wh_flow_wafer_t *of = &plan->wafers[wafer];
+    const int32_t carrier = plan->calls[plan->lots[of->lot].call - 1].carrier;
+    char called[2 * WH_NAME_SIZE];
+    if (carrier == 0) {
+        return strcmp(of->name, name) == 0;
+    }
+    (void)snprintf(called, sizeof called, "%s.%d", played->mcs->layout->carriers[carrier - 1].name,
+                   (int)wh_flow_slot(played->tool, of->home));
+    return strcmp(called, name) == 0;
+}
+
+/* The lots' wafer of this name, or WH_FLOW_NONE. One that lies there goes before one that is to come. */
+static int32_t find_named(const wh_flow_played_t *played, const char *name) {
+    const wh_flow_plan_t *plan = &played->flow->plan;
+    int32_t late = WH_FLOW_NONE;
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        if (is_there(plan, w)) {
+            if (strcmp(plan->wafers[w].name, name) == 0) {
+                return w;
+            }
+        } else if (late == WH_FLOW_NONE && is_called(played, w, name)) {
+            late = w;
+        }
+    }
+    return late;
+}
+
+/* The wafers of lists' lines, by the names that they have now. Pushes what is wrong; true: nothing is. */
+static bool find_asked(lua_State *L, const wh_flow_played_t *played) {
+    const wh_flow_plan_t *plan = &played->flow->plan;
+    int32_t *found = wh_array_new(plan->asked.count + 1, sizeof *found);
+    bool is_good = true;
+    for (size_t i = 0; i < plan->asked.count; ++i) {
+        found[i] = find_named(played, plan->asked.items[i]);
+    }
+    for (size_t r = 0; plan->lists && r < played->tool->robot_count && is_good; ++r) {
+        for (size_t i = 0; i < plan->lists[r].count && is_good; ++i) {
+            wh_flow_line_t *line = &plan->lists[r].lines[i];
+            const int32_t number = WH_FLOW_ASKED(line->wafer);
+            if (number >= 0 && number < (int32_t)plan->asked.count) {
+                line->wafer = found[number];
+                is_good = line->wafer != WH_FLOW_NONE;
+            }
+            if (!is_good) {
+                lua_pushfstring(L, "rule.order.%s[%d][3]: \"%s\" (expected a wafer of the lots by name)",
+                                played->tool->robots[r].name, (int)i + 1, plan->asked.items[number]);
+            }
+        }
+    }
+    free(found);
+    return is_good;
+}
+
+static bool check_all_free(lua_State *L, const wh_flow_played_t *played, const int32_t lying[]) {
+    bool is_good = true;
+    for (size_t p = 0; p < played->tool->place_count && is_good; ++p) {
+        is_good = is_to_come(played, played->tool->place_stations[p]) || check_free(L, played, lying, p);
+    }
+    return is_good;
+}
+
 void wh_flow_bind_wafers(lua_State *L, wh_flow_played_t *played) {
     int32_t *lying = wh_flow_find_lying(played);
     bool is_good = check_blades(L, played) && check_ends(L, played);
@@ -209,9 +277,7 @@ void wh_flow_bind_wafers(lua_State *L, wh_flow_played_t *played) {
             lua_remove(L, is_good ? -1 : -2);
         }
     }
-    for (size_t p = 0; p < played->tool->place_count && is_good; ++p) {
-        is_good = is_to_come(played, played->tool->place_stations[p]) || check_free(L, played, lying, p);
-    }
+    is_good = is_good && check_all_free(L, played, lying) && find_asked(L, played);
     free(lying);
     if (!is_good) {
         wh_mcs_raise(L, played->mcs, WH_STATUS_BAD_ARGUMENT,

@@ -7,6 +7,20 @@
 #include "../text/array.h"
 #include "flow_plan.h"
 
+/* In a cell with axes wafers have the names of those that lie in their slots, which is looked at later. */
+static int32_t ask_wafer(wh_flow_plan_t *plan, const char *name) {
+    size_t number = 0;
+    while (number < plan->asked.count && strcmp(plan->asked.items[number], name) != 0) {
+        ++number;
+    }
+    if (number == plan->asked.count) {
+        plan->asked.items = wh_array_grow(plan->asked.items, plan->asked.count, &plan->asked.capacity,
+                                          sizeof *plan->asked.items);
+        plan->asked.items[plan->asked.count++] = wh_text_copy(name);
+    }
+    return WH_FLOW_ASKED((int32_t)number);
+}
+
 static int32_t find_wafer(wh_reader_t *reader, const wh_flow_plan_t *plan, const char *name) {
     for (size_t i = 0; i < plan->wafer_count; ++i) {
         if (strcmp(plan->wafers[i].name, name) == 0) {
@@ -40,7 +54,7 @@ static void read_way(wh_reader_t *reader, const wh_flow_tool_t *tool, const char
     line->to = keeps ? WH_FLOW_NONE : wh_timed_find_station(reader, tool, "[2]", to);
 }
 
-static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan,
                       wh_flow_line_t *line) {
     char first[WH_NAME_SIZE], second[WH_NAME_SIZE], third[WH_NAME_SIZE];
     const size_t count = wh_reader_list(reader);
@@ -56,7 +70,9 @@ static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_
         return;
     }
     read_way(reader, tool, first, second, line);
-    line->wafer = third[0] == '\0' ? WH_FLOW_NONE : find_wafer(reader, plan, third);
+    if (third[0] != '\0') {
+        line->wafer = wh_flow_has_real(tool) ? ask_wafer(plan, third) : find_wafer(reader, plan, third);
+    }
 }
 
 static void check_served(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot,
@@ -92,8 +108,7 @@ static size_t find_known(known_t *known, const void *table, size_t line) {
     return SIZE_MAX;
 }
 
-static void read_list(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
-                      int32_t robot) {
+static void read_list(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan, int32_t robot) {
     wh_flow_list_t *list = &plan->lists[robot];
     const size_t count = wh_reader_list(reader);
     known_t known = {.count = 0};

@@ -8,6 +8,7 @@
 #include "../flow/waits.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "../text/clock.h"
 #include "../text/nearest.h"
 #include "flow_own.h"
 #include "flow_plan.h"
@@ -290,6 +291,7 @@ static int play_flow(lua_State *L) {
     const wh_flow_tool_t *tool = mcs->layout->tool;
     wh_flow_t *flow = wh_flow_read_word(L, mcs, tool);
     flow->plan.ends_steady = flow->asks_steady = mcs->wanted.until_steady;
+    const double begin = wh_clock_seconds();
     wh_flow_own_open(L, tool, &flow->plan);
     wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps, &flow->figures);
     const bool has_failed = wh_flow_own_close(L, &flow->plan);
@@ -297,6 +299,7 @@ static int play_flow(lua_State *L) {
     if (flow->has_gains && !has_failed) {
         flow->figures.gains = wh_flow_gains(tool, &flow->plan);
     }
+    mcs->recorder.record->wall_s += wh_clock_seconds() - begin;
     return wh_flow_return_word(L, mcs, has_failed);
 }
 

@@ -49,14 +49,19 @@ int wh_best_print_table(const wh_best_result_t *result, FILE *out, const wh_styl
         print_lists(result, out);
         fputc('\n', out);
     }
+    if (best->lacks_swaps) {
+        wh_style_print(style, out, WH_INK_WARN, "! ");
+        fputs("swaps are shorter than a pick and a placing: the bound holds with them, the lists have none\n",
+              out);
+    }
     if (is_optimal(best)) {
         wh_style_print(style, out, WH_INK_GOOD, "optimal");
         fputc('\n', out);
     } else if (best->lists) {
         wh_style_print(style, out, WH_INK_WARN, "! ");
-        fprintf(out,
-                "not proved: it may be up to %.2g %% above the best; --best with more nodes looks further\n",
-                100 * (seconds(best->makespan_us) / seconds(best->bound_us) - 1));
+        fprintf(out, "not proved: it may be up to %.2g %% above the best%s\n",
+                100 * (seconds(best->makespan_us) / seconds(best->bound_us) - 1),
+                best->lacks_swaps ? "" : "; --best with more nodes looks further");
     } else {
         wh_style_print(style, out, WH_INK_BAD, "no schedule was found");
         fputs(": --best with more nodes looks further\n", out);
@@ -84,9 +89,10 @@ static json_t *order_of(const wh_best_result_t *result) {
 int wh_best_print_json(const wh_best_result_t *result, FILE *out) {
     const wh_flow_best_t *best = result->best;
     json_t *root =
-        wh_json_set(json_object(), "format %d script %s rule_s %g best_s %g bound_s %g optimal %i nodes %lld",
+        wh_json_set(json_object(),
+                    "format %d script %s rule_s %g best_s %g bound_s %g optimal %i lacks_swaps %i nodes %lld",
                     1, result->script, seconds(result->rule_us), seconds(best->makespan_us),
-                    seconds(best->bound_us), is_optimal(best), (long long)best->nodes);
+                    seconds(best->bound_us), is_optimal(best), best->lacks_swaps, (long long)best->nodes);
     wh_json_put(root, "order", best->lists ? order_of(result) : json_null());
     const int status = wh_json_print(root, out);
     json_decref(root);

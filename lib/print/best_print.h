@@ -1,8 +1,9 @@
 /* The best schedule of a flow that was found, for people and for programs.
  *
  * As JSON one object: format (1), script, rule_s (the makespan of the script's own rule), best_s (null: none
- * was found), bound_s (no schedule takes less), optimal, nodes (looked at), order: by robot the list of lines
- * [from, to, wafer], "keep" for an arm, as a flow's lists (null likewise)
+ * was found), bound_s (no schedule takes less), optimal, lacks_swaps (swaps are shorter than a pick and a
+ * placing, and the lists have none), nodes (looked at), order: by robot the list of lines [from, to, wafer],
+ * "keep" for an arm, as a flow's lists (null likewise)
  */
 #ifndef WH_PRINT_BEST_PRINT_H
 #define WH_PRINT_BEST_PRINT_H

@@ -53,6 +53,9 @@ static void read_pair(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, 
     }
     const size_t a = (size_t)wh_timed_find_station(reader, tool, pair, from),
                  b = (size_t)wh_timed_find_station(reader, tool, pair, to);
+    if (a == b) {
+        wh_reader_refuse(reader, NULL, pair, "two stations: within one a robot has no way");
+    }
     const int64_t us = wh_timed_read_us(reader, pair, (double)NAN);
     tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] = us;
     (void)snprintf(back, sizeof back, "%s>%s", to, from);

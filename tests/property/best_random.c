@@ -1,5 +1,5 @@
-/* The search for the best schedule, in random small tools: the engine plays what it finds to the same end; no rule and no schedule
- * at random is below its bound; where it says that its schedule is optimal, none is better than that. */
+/* The search for the best schedule, in random small tools: the engine plays what it finds to the same end; no rule, with exchanges
+ * or without, and no schedule at random is below its bound; where it says that its schedule is optimal, none is better than that. */
 #include "flow/best.h"
 
 #include <stdlib.h>
@@ -19,9 +19,10 @@ static void open_case(flow_case_t *flow) {
                                  : "R",
               "L*5 U*5 A B C D");
     const double handle = 1 + (double)wh_test_below(4), move = (double)wh_test_below(4);
-    flow_robot(flow, "R", two ? "L A B" : "L U A B C D", handle, 1 + (double)wh_test_below(3), move, 0);
+    const double swap = wh_test_below(3) == 0 ? 1 + (double)wh_test_below(4) : 0; /* 0: the usual one */
+    flow_robot(flow, "R", two ? "L A B" : "L U A B C D", handle, 1 + (double)wh_test_below(3), move, swap);
     if (two) {
-        flow_robot(flow, "S", "A B C D U", handle, 2, 1, 0);
+        flow_robot(flow, "S", "A B C D U", handle, 2, 1, swap);
     }
     for (int32_t s = 2; s < 6; ++s) {
         flow->tool.stations[s].process_us = wh_test_below(4) == 0 ? 0 : (int64_t)wh_test_below(30) * FLOW_S;
@@ -72,7 +73,8 @@ typedef struct {
 } sums_t;
 
 static void compare(flow_case_t *flow, size_t width, sums_t *sums) {
-    static const wh_flow_rule_t rules[] = {WH_FLOW_BACKWARD, WH_FLOW_FIRST_COME, WH_FLOW_LONGEST_WAIT};
+    static const wh_flow_rule_t rules[] = {WH_FLOW_BACKWARD, WH_FLOW_SWAPPING, WH_FLOW_FIRST_COME,
+                                           WH_FLOW_LONGEST_WAIT};
     wh_flow_best_t best;
     wh_flow_best(&flow->tool, &flow->plan, width, NULL, NULL, &best);
     const bool is_optimal = best.lists && best.makespan_us == best.bound_us;
