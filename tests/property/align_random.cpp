@@ -459,7 +459,8 @@ void two_notches_are_never_one(void **) {
     wh_rounds_t rounds = WH_ROUNDS(60, 20000, 0.1);
     while (wh_round(&rounds)) {
         const bool large = wh_test_below(2) == 1;
-        const int needed = large ? 3105 : 2091; /* 0.31 mm apart where the rim is farthest, 3.2 mm off the middle */
+        const int needed =
+            large ? 3105 : 2091; // 0.31 mm apart where the rim is farthest, 3.2 mm off the middle
         const int count = 600 + static_cast<int>(wh_test_below(3300));
         const double phase = wh_test_uniform(0, 1);
         const wh_align_result_t two = verdict_on_notches(large ? 150 : 100, count, phase, true);
