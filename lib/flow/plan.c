@@ -326,9 +326,6 @@ char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
             return problem;
         }
     }
-    for (size_t i = 1; i < plan->lot_count; ++i) {
-        plan->has_ranks = plan->has_ranks || plan->lots[i].priority != plan->lots[0].priority;
-    }
     for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
         char *problem = check_wafer(plan, tool, w);
         if (problem) {

@@ -124,7 +124,6 @@ typedef struct {
     wh_flow_step_t *backs;          /* by station: the step back to it */
     wh_flow_lot_t *lots;            /* by arrival */
     size_t lot_count;
-    bool has_ranks;        /* lots differ in priority */
     wh_flow_call_t *calls; /* in the order in which their lots arrive */
     size_t call_count;
     wh_flow_wafer_t *wafers; /* lot after lot */

@@ -22,8 +22,8 @@ static int32_t first_of(const wh_flow_state_t *state, int32_t robot, const wh_fl
             continue;
         }
         const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
-        *place = wh_flow_find_safe_place(state, robot, wafer, begin_us);
-        if (*place != WH_FLOW_NONE && !wh_flow_is_outranked(state, robot, wafer, wh_flow_find_safe_place)) {
+        *place = wh_flow_safe_place(state, robot, wafer, begin_us, WH_FLOW_NONE);
+        if (*place != WH_FLOW_NONE) {
             return wafer;
         }
     }

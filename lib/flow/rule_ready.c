@@ -40,9 +40,8 @@ static void look_at_step(const wh_flow_state_t *state, int32_t robot, const wh_f
         int64_t there_us = 0;
         const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
         candidate_t candidate = {wafer, WH_FLOW_NONE, begin_us, begin_us == there_us};
-        if (begin_us != WH_FLOW_NEVER && is_better(state, &candidate, best) &&
-            !wh_flow_is_outranked(state, robot, wafer, wh_flow_find_safe_place)) {
-            candidate.place = wh_flow_find_safe_place(state, robot, wafer, begin_us);
+        if (begin_us != WH_FLOW_NEVER && is_better(state, &candidate, best)) {
+            candidate.place = wh_flow_safe_place(state, robot, wafer, begin_us, WH_FLOW_NONE);
             *best = candidate.place != WH_FLOW_NONE ? candidate : *best;
         }
     }

@@ -218,7 +218,7 @@ static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow
         }
         const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
         const int32_t place = wh_flow_swap_way(state, robot, wafer, begin_us);
-        if (place != WH_FLOW_NONE && !wh_flow_is_outranked(state, robot, wafer, wh_flow_swap_way)) {
+        if (place != WH_FLOW_NONE) {
             found->wafer = wafer;
             found->place = place;
         }

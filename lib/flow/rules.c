@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "../text/array.h"
-#include "transfer.h"
 
 /* Step 0 of a route lies where its lots do. */
 static bool serves_home(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot,
@@ -140,39 +139,6 @@ void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool) {
     }
     free(rules->rounds);
     memset(rules, 0, sizeof *rules);
-}
-
-int32_t wh_flow_find_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
-                                int64_t begin_us) {
-    return wh_flow_safe_place(state, robot, wafer, begin_us, WH_FLOW_NONE);
-}
-
-static bool can_begin(const wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_find_place_t find) {
-    int64_t there_us = 0;
-    if (!wh_flow_may_take(state, robot, wafer)) {
-        return false;
-    }
-    const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
-    return begin_us != WH_FLOW_NEVER && find(state, robot, wafer, begin_us) != WH_FLOW_NONE;
-}
-
-bool wh_flow_is_outranked(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
-                          wh_flow_find_place_t find) {
-    const wh_flow_plan_t *plan = state->plan;
-    if (!plan->has_ranks || state->wafers[wafer].step > 0) {
-        return false;
-    }
-    for (size_t i = 0; i < plan->route_count; ++i) {
-        const size_t first = plan->routes[i].first_step;
-        for (int32_t w = wh_flow_next_in(state, first, WH_FLOW_NONE); w != WH_FLOW_NONE;
-             w = wh_flow_next_in(state, first, w)) {
-            if (wh_flow_priority(plan, w) > wh_flow_priority(plan, wafer) &&
-                can_begin(state, robot, w, find)) {
-                return true;
-            }
-        }
-    }
-    return false;
 }
 
 bool wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,

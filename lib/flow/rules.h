@@ -38,18 +38,6 @@ bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int3
 bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
 bool wh_flow_ask_own(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
 
-/* Where a robot brings a wafer that it takes then, or WH_FLOW_NONE: wh_flow_swap_way, or by the other
- * rules. */
-typedef int32_t (*wh_flow_find_place_t)(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
-                                        int64_t begin_us);
-int32_t wh_flow_find_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us);
-
-/* True if the wafer lies in its first place, and one of a lot of higher priority lies in its own, which the
- * robot could take in its stead: that one goes first, though its lot came later. Cost: linear in the lots
- * that wait, if lots differ in priority. */
-bool wh_flow_is_outranked(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
-                          wh_flow_find_place_t find);
-
 /* Fills the order that carries out a line. Null, or why the line can never be carried out; `is_known`: it
  * could be, and no wafer has gone anywhere since. */
 const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,

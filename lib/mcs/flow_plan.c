@@ -43,7 +43,7 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     {"wafers", "waferhand.lot_wafers", "{ STATION, FIRST SLOT, LAST SLOT }", true},
     {"route", "string", "the route's name; the only one", false},
     {"arrives", "number", "s; 0", false},
-    {"priority", "integer", "the higher one goes first out of first places, and wins ties; 0", false},
+    {"priority", "integer", "the higher one wins ties, as of lots that arrive together; 0", false},
     {"recipe", "string|table",
      "by which stations process its wafers, in place of their own; also by slot: { default = , [3] = }",
      false},

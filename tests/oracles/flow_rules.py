@@ -94,13 +94,6 @@ def to_come(model, route, number):
             and (wafer.step if wafer.toward is None else wafer.toward) < number and number < len(wafer.steps)]
 
 
-def outranked(model, robot, wafer, goes):
-    """It lies in its first place, and the robot could take one of a higher priority from there, though its lot came later."""
-    return wafer.step == 0 and any(
-        other.step == 0 and not other.ended and other.lies() and other.lot.get("priority", 0) > wafer.lot.get("priority", 0) and model.carries(robot, other)
-        and model.picking_from(robot, other, model.arrival(robot, other.place.station)) is not None and goes(model, robot, other) for other in model.wafers)
-
-
 def backward(model, robot):
     steps = steps_emptied(model, robot)
     order = sorted(steps, key=lambda step: round_key(model, step))
@@ -114,7 +107,7 @@ def backward(model, robot):
             continue
         for wafer in sorted(steps[step], key=entry):
             places = places_for(model, robot, wafer)
-            if places and not outranked(model, robot, wafer, places_for):
+            if places:
                 begun = begin_or_go(model, robot, wafer, places)
                 if wafer.toward is not None and wafer.place:
                     robot.behind = step
@@ -131,7 +124,7 @@ def in_order(model, robot):
             continue
         arrival = model.arrival(robot, wafer.place.station)
         begin, places = model.picking_from(robot, wafer, arrival), places_for(model, robot, wafer)
-        if begin is None or not places or outranked(model, robot, wafer, places_for):
+        if begin is None or not places:
             continue
         key = (wafer.done, -wafer.lot.get("priority", 0), -wafer.step, wafer.entered, wafer.order)
         key = (wafer.order,) if model.rule == "first_come" else key
@@ -154,11 +147,11 @@ def swap(model, robot):
     firsts = {route: first_step(model, robot, route) for route in model.routes}
     coming = [route for route in model.routes if not model.relaxed and to_come_or_there(model, route, firsts[route])]
     wanted = [wafer for (number, route), wafers in steps.items() if route in coming and number == firsts[route] for wafer in wafers]
-    wanted = [wafer for wafer in wanted if target_of(model, robot, wafer) and not outranked(model, robot, wafer, target_of)]
+    wanted = [wafer for wafer in wanted if target_of(model, robot, wafer)]
     if not wanted and not any(steps.get((firsts[route], route)) for route in coming) and coming:
         return False
     if not wanted:
-        able = {step: [wafer for wafer in wafers if target_of(model, robot, wafer) and not outranked(model, robot, wafer, target_of)]
+        able = {step: [wafer for wafer in wafers if target_of(model, robot, wafer)]
                 for step, wafers in steps.items()}
         able = {step: wafers for step, wafers in able.items() if wafers}
         if not able:
