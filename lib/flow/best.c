@@ -521,7 +521,7 @@ void wh_flow_best(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, size_t
     search_t search = {.width = width, .best = best, .last = WH_FLOW_NONE, .left_out_us = WH_FLOW_NEVER};
     search_all(tool, plan, &search, progress, user);
     if (best->lacks_swaps) {
-        wh_flow_best_t relaxed;
+        wh_flow_best_t relaxed = {0};
         search = (search_t){.width = width,
                             .best = &relaxed,
                             .last = WH_FLOW_NONE,

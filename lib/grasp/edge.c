@@ -55,8 +55,8 @@ static spot_t direction(wh_real_t angle) {
     const wh_real_t square = angle * angle;
     spot_t d = {1, 1};
     for (int k = 22; k > 0; k -= 2) {
-        d.x = 1 - d.x * square / WH_REAL(k * (k - 1));
-        d.y = 1 - d.y * square / WH_REAL(k * (k + 1));
+        d.x = 1 - d.x * square / (wh_real_t)(k * (k - 1));
+        d.y = 1 - d.y * square / (wh_real_t)(k * (k + 1));
     }
     d.y *= angle;
     return d;

@@ -9,33 +9,33 @@
 typedef struct {
     wh_words_t words;
     const wh_event_names_t *names;
-} said_t;
+} table_words_t;
 
-static said_t begin(const wh_event_names_t *names, char *buffer, size_t size) {
+static table_words_t begin(const wh_event_names_t *names, char *buffer, size_t size) {
     static const wh_event_names_t none = {NULL, NULL, 0, NULL, NULL};
-    said_t said;
+    table_words_t said;
     said.words = wh_words_begin(buffer, size);
     said.names = names ? names : &none;
     return said;
 }
 
-static void put_text(said_t *said, const char *text) {
+static void put_text(table_words_t *said, const char *text) {
     wh_words_put(&said->words, text);
 }
 
-static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
+static void put_name(table_words_t *said, wh_name_kind_t kind, int32_t index) {
     wh_names_put(said->names, &said->words, kind, index);
 }
 
-static void put_whole(said_t *said, uint64_t value) {
+static void put_whole(table_words_t *said, uint64_t value) {
     wh_words_integer(&said->words, (int64_t)value);
 }
 
-static void put_real(said_t *said, wh_real_t value, int decimals) {
+static void put_real(table_words_t *said, wh_real_t value, int decimals) {
     wh_words_fixed(&said->words, value, decimals);
 }
 
-static const char *degree_of(const said_t *said) {
+static const char *degree_of(const table_words_t *said) {
     return said->names->degree ? said->names->degree : " deg";
 }
 
@@ -46,7 +46,7 @@ static const char *missing(const wh_grasp_t *table) {
     return table->mark == WH_GRASP_MARK ? NULL : "not initialised";
 }
 
-static void put_valve(said_t *said, int32_t valve) {
+static void put_valve(table_words_t *said, int32_t valve) {
     if (valve == WH_VALVE_OPEN) {
         put_text(said, "open");
     } else if (valve == WH_VALVE_CLOSED) {
@@ -59,7 +59,7 @@ static void put_valve(said_t *said, int32_t valve) {
 
 /* ----------------------------------------------------------------------------------------------- a table */
 
-static void put_pose(said_t *said, const wh_pose_t *pose) {
+static void put_pose(table_words_t *said, const wh_pose_t *pose) {
     const wh_mat3_t *R = &pose->R;
     const wh_real_t aside = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
     put_text(said, ": at ");
@@ -76,7 +76,7 @@ static void put_pose(said_t *said, const wh_pose_t *pose) {
     put_text(said, degree_of(said));
 }
 
-static void put_encounter(said_t *said, const char *verb, const wh_encounter_t *encounter) {
+static void put_encounter(table_words_t *said, const char *verb, const wh_encounter_t *encounter) {
     if (encounter->wafer == WH_NONE) {
         return;
     }
@@ -93,7 +93,7 @@ static void put_encounter(said_t *said, const char *verb, const wh_encounter_t *
     put_text(said, ")");
 }
 
-static void say_wafer(said_t *said, const wh_grasp_t *table, size_t index) {
+static void say_wafer(table_words_t *said, const wh_grasp_t *table, size_t index) {
     const wh_wafer_t *wafer = &table->storage.wafers[index];
     put_name(said, WH_NAME_WAFER, (int32_t)index);
     put_pose(said, &wafer->base_from_wafer);
@@ -104,7 +104,7 @@ static void say_wafer(said_t *said, const wh_grasp_t *table, size_t index) {
     put_text(said, "\n");
 }
 
-static void say_gripper(said_t *said, const wh_grasp_t *table, size_t index) {
+static void say_gripper(table_words_t *said, const wh_grasp_t *table, size_t index) {
     const wh_gripper_t *gripper = &table->storage.grippers[index];
     put_name(said, WH_NAME_GRIPPER, (int32_t)index);
     put_pose(said, &gripper->base_from_gripper);
@@ -120,7 +120,7 @@ static void say_gripper(said_t *said, const wh_grasp_t *table, size_t index) {
 }
 
 size_t wh_grasp_text(const wh_grasp_t *table, const wh_event_names_t *names, char *buffer, size_t size) {
-    said_t said = begin(names, buffer, size);
+    table_words_t said = begin(names, buffer, size);
     const char *why = missing(table);
     if (why) {
         put_text(&said, "the table is ");
@@ -145,7 +145,7 @@ size_t wh_grasp_text(const wh_grasp_t *table, const wh_event_names_t *names, cha
 /* The thing that is compared: a wafer or gripper. Where there is a verb, the gripper holds, follows or
  * contests `wafer`. `parts` counts what its line says so far. */
 typedef struct {
-    said_t said;
+    table_words_t said;
     wh_name_kind_t kind;
     int32_t index, wafer;
     const char *verb;
@@ -153,8 +153,8 @@ typedef struct {
 } difference_t;
 
 /* Begins the line of the thing, or goes on with it. */
-static said_t *open_part(difference_t *difference) {
-    said_t *said = &difference->said;
+static table_words_t *open_part(difference_t *difference) {
+    table_words_t *said = &difference->said;
     if (difference->parts > 0) {
         put_text(said, ", ");
     } else {
@@ -190,7 +190,7 @@ static void compare_real(difference_t *difference, const char *name, const char 
     if (is_same(expected, found)) {
         return;
     }
-    said_t *said = open_part(difference);
+    table_words_t *said = open_part(difference);
     const int decimals = wh_words_apart(expected, found, 3);
     const bool is_opposite = (expected < 0) != (found < 0);
     put_text(said, name);
@@ -230,7 +230,7 @@ static void compare_rotation(difference_t *difference, const wh_mat3_t *expected
     if (is_same_rotation(expected, found)) {
         return;
     }
-    said_t *said = open_part(difference);
+    table_words_t *said = open_part(difference);
     const wh_real_t deg = wh_deg_from_rad(angle_between(expected, found));
     if (wh_words_read_same(deg, 0, WH_WORDS_DECIMALS)) {
         put_text(said, "a rotation of other bits than expected");
@@ -252,7 +252,7 @@ static void compare_pose(difference_t *difference, const wh_pose_t *expected, co
 static void compare_index(difference_t *difference, const char *verb, wh_name_kind_t kind, int32_t expected,
                           int32_t found) {
     if (expected != found) {
-        said_t *said = open_part(difference);
+        table_words_t *said = open_part(difference);
         put_text(said, verb);
         put_name(said, kind, found);
         put_text(said, " (expected ");
@@ -263,7 +263,7 @@ static void compare_index(difference_t *difference, const char *verb, wh_name_ki
 
 static void compare_slice(difference_t *difference, uint64_t expected, uint64_t found) {
     if (expected != found) {
-        said_t *said = open_part(difference);
+        table_words_t *said = open_part(difference);
         put_text(said, "in slice ");
         put_whole(said, found);
         put_text(said, " (expected ");
@@ -311,7 +311,7 @@ static void compare_wafer(difference_t *difference, const wh_wafer_t *expected, 
 static void compare_gripper(difference_t *difference, const wh_gripper_t *expected,
                             const wh_gripper_t *found) {
     if (expected->valve != found->valve) {
-        said_t *said = open_part(difference);
+        table_words_t *said = open_part(difference);
         put_valve(said, found->valve);
         put_text(said, " (expected ");
         put_valve(said, expected->valve);
@@ -349,7 +349,7 @@ static void compare_tables(difference_t *difference, const wh_grasp_t *expected,
 }
 
 /* Writes what keeps two tables from being compared; false if nothing does. */
-static bool say_missing(said_t *said, const char *whose, const wh_grasp_t *table) {
+static bool say_missing(table_words_t *said, const char *whose, const wh_grasp_t *table) {
     const char *why = missing(table);
     if (why) {
         put_text(said, whose);
@@ -359,7 +359,7 @@ static bool say_missing(said_t *said, const char *whose, const wh_grasp_t *table
     return why != NULL;
 }
 
-static void say_count(said_t *said, const char *what, uint64_t expected, uint64_t found) {
+static void say_count(table_words_t *said, const char *what, uint64_t expected, uint64_t found) {
     if (expected != found) {
         put_text(said, what);
         put_whole(said, found);
@@ -371,7 +371,8 @@ static void say_count(said_t *said, const char *what, uint64_t expected, uint64_
 
 size_t wh_grasp_difference(const wh_grasp_t *expected, const wh_grasp_t *found, const wh_event_names_t *names,
                            char *buffer, size_t size) {
-    difference_t difference = {begin(names, buffer, size), WH_NAME_WAFER, 0, WH_NONE, NULL, 0};
+    difference_t difference = {.kind = WH_NAME_WAFER, .wafer = WH_NONE};
+    difference.said = begin(names, buffer, size);
     const bool none_expected = say_missing(&difference.said, "the expected table is ", expected);
     const bool none_found = say_missing(&difference.said, "the table is ", found);
     if (none_expected || none_found) {
