@@ -46,11 +46,13 @@ def pack(text):
 
 
 def text_of(name, document):
-    """What stands in the place of @name@."""
+    """What stands in the place of @name@, in a page without an engine."""
     if name == "document":
         return pack(json.dumps(document, separators=(",", ":")))
     if name == "title":
         return html.escape(document.get("title", "Report"))
+    if name in ("policy", "rerun"):
+        return ""
     path = pathlib.Path(LIBRARIES.get(name, PAGE / name))
     if name.endswith(".in"):
         return fill(path.read_text(encoding="utf-8"), document)
