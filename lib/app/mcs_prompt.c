@@ -13,7 +13,7 @@
 #define SHOWN_BYTES 2000
 
 /* Shows a line that was said, as at a port. */
-static void show_line(const wh_mcs_prompt_t *prompt, char kind, const char *who, const char *text) {
+static void show_line(const wh_mcs_prompt_t *prompt, int kind, const char *who, const char *text) {
     char shown[SHOWN_BYTES];
     wh_utf8_clip(shown, sizeof shown, text);
     wh_news_t *news = wh_news_make(WH_NEWS_FRAME, wh_session_time_us(&prompt->session), shown, who);

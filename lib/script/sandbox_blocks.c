@@ -48,7 +48,7 @@ static void *take(wh_sandbox_blocks_t *blocks, size_t size) {
     }
     void *const block = blocks->free[kind];
     if (block != NULL) {
-        memcpy(&blocks->free[kind], block, sizeof block);
+        memcpy(&blocks->free[kind], block, sizeof(void *));
         return block;
     }
     if (kind * STEP > blocks->size - blocks->used) {
@@ -63,7 +63,7 @@ void wh_sandbox_block_free(wh_sandbox_blocks_t *blocks, void *block, size_t held
         free(block);
         return;
     }
-    memcpy(block, &blocks->free[kind_of(held)], sizeof block);
+    memcpy(block, &blocks->free[kind_of(held)], sizeof(void *));
     blocks->free[kind_of(held)] = block;
 }
 

@@ -168,9 +168,9 @@ static void end_hold(player_t *player, hold_t *hold, int32_t robot, int64_t now_
     wh_flow_tell_hold(&player->engine->state, robot, false);
 }
 
-/* Requests come and end at this time. */
+/* Requests come and end at this time, unless nothing is to come any more. */
 static void hold_robots(player_t *player, hold_t holds[2], size_t robots, int64_t now_us) {
-    for (int32_t r = 0; r < (int32_t)robots; ++r) {
+    for (int32_t r = 0; now_us != WH_FLOW_NEVER && r < (int32_t)robots; ++r) {
         if (holds[r].change_us == now_us && holds[r].is_on) {
             end_hold(player, &holds[r], r, now_us);
         } else if (holds[r].change_us == now_us) {

@@ -45,8 +45,8 @@ static void doors_stay_when_physics_come_later(void **state) {
     assert_int_equal(wh_simulator_set_physics(&simulator, &physics), WH_OK);
     doors_begin_at_home(state);
     go(0.2, 99.8);
-    assert_near(at()[0], 0.2, 0);
-    assert_near(at()[1], 99.8, 0);
+    assert_near(at()[0], WH_REAL(0.2), 0);
+    assert_near(at()[1], WH_REAL(99.8), 0);
 }
 
 static void a_door_follows_its_axis_to_the_bit(void **state) {
