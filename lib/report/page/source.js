@@ -26,7 +26,7 @@
 
     W.source = {
         async take() {
-            const text = W.given.isNext() ? '' : await inflate(document.getElementById('document').textContent.trim());
+            const text = W.given && W.given.isNext() ? '' : await inflate(document.getElementById('document').textContent.trim());
             if (text === '') {
                 return W.given.take();
             }
