@@ -8,9 +8,11 @@
 #include "fuzz.h"
 
 /* The allocator of the sandbox, on the arena; the linker then leaves out the one of lib/script. */
+#define malloc(size) fuzz_arena_resize(NULL, size)
 #define realloc fuzz_arena_resize
 #define free fuzz_arena_free
-#include "script/sandbox_memory.c"
+#include "script/sandbox_blocks.c"
+#undef malloc
 #undef realloc
 #undef free
 
