@@ -167,7 +167,7 @@
         } else if (own.isCheck) {
             tell(answer.hash === want ? W().why('The engine of this page gives the hash of this report.')
                 : failure('The engine of this page gives another hash than this report has: it is of another build, or a file '
-                    + 'has changed since. What it plays is not comparable.'));
+                    + 'has changed since. Its run cannot be compared with this one.'));
         }
     }
 

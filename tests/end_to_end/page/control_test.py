@@ -69,7 +69,7 @@ class Control(unittest.TestCase):
         self.assertIn(text, json.loads(answer)["text"])
 
     def test_robots_of_a_flow_are_held(self):
-        """Each alone, and all; the flow waits, and goes on to its end. What cannot be held is refused by name."""
+        """Each alone, and all; the flow waits, and goes on to its end. A robot that cannot be held is refused by name."""
         served = self.serve("run", "tests/end_to_end/data/flow_mixed_run.lua", "--set", "wafers=1", "--json", "--page", "0", "--page-control",
                             "--rate", "20")
         for _ in range(500):

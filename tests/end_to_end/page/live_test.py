@@ -292,7 +292,7 @@ class Live(unittest.TestCase):
         stream.close()
 
     def test_refusals(self):
-        """What cannot be offered is refused by name."""
+        """An option that cannot be offered is refused by name."""
         for arguments, message in (
                 (("run", TRANSFER, "--open"), "--open goes with --page"),
                 (("run", TRANSFER, "--rate", "2"), "--rate: 2 (goes with --page"),
