@@ -140,6 +140,50 @@ void stop_in_motion(Line &robot) {
     robot_does(robot, "SPD 100", "OK");
 }
 
+/* A wafer lies on the chuck; an angle without a sensor, no angle, and a frame with a bad sum. */
+void align(Line &aligner) {
+    aligner_does(aligner, "VN");
+    aligner.send(with_lrc("WF"));
+    expect(hear_lrc(aligner),
+           "\x06"
+           "1",
+           "the chuck holds it");
+    aligner_does(aligner, "RO900");
+    aligner.send(with_lrc("AL900")); /* this aligner has no sensor */
+    expect(hear_lrc(aligner), "\x06", "align");
+    expect(hear_lrc(aligner), "X07", "align");
+    aligner.send(with_lrc("ALx"));
+    expect(hear_lrc(aligner),
+           "\x15"
+           "07",
+           "no angle");
+    std::string broken = with_lrc("WF");
+    broken.back() = static_cast<char>(broken.back() ^ 0x40);
+    aligner.send(broken);
+    expect(hear_lrc(aligner),
+           "\x15"
+           "01",
+           "a bad sum");
+}
+
+/* The host is there again; its robot has lost its power with the client. */
+void come_back(int robot_port) {
+    Line again(robot_port);
+    expect(again.until("\r\n>"), "READY", "a greeting");
+    std::string told;
+    const Clock::time_point begin = Clock::now();
+    do { /* its power went with the client */
+        again.send("STA\r");
+        told = again.until("\r\n>");
+    } while ((told.back() == '1' || told.back() == '9') && Clock::now() - begin < std::chrono::seconds(10));
+    expect(told, "0008", "no power, and the last motion has failed");
+    robot_does(again, "MTS A,1", "?10");
+    robot_does(again, "PWR 1", "OK");
+    robot_does(again, "RET", "OK");
+    robot_does(again, "HOM", "OK");
+    robot_does(again, "GET A,3", "OK");
+}
+
 void run(int robot_port, int load_port, int aligner_port) {
     Line port(load_port);
     Line aligner(aligner_port);
@@ -156,28 +200,7 @@ void run(int robot_port, int load_port, int aligner_port) {
         robot_does(robot, "GET A,1", "OK");
         robot_does(robot, "STA", "001A"); /* with the wafer, and the error of before */
         robot_does(robot, "PUT C,1", "OK");
-        aligner_does(aligner, "VN");
-        aligner.send(with_lrc("WF"));
-        expect(hear_lrc(aligner),
-               "\x06"
-               "1",
-               "the chuck holds it");
-        aligner_does(aligner, "RO900");
-        aligner.send(with_lrc("AL900")); /* this aligner has no sensor */
-        expect(hear_lrc(aligner), "\x06", "align");
-        expect(hear_lrc(aligner), "X07", "align");
-        aligner.send(with_lrc("ALx"));
-        expect(hear_lrc(aligner),
-               "\x15"
-               "07",
-               "no angle");
-        std::string broken = with_lrc("WF");
-        broken.back() = static_cast<char>(broken.back() ^ 0x40);
-        aligner.send(broken);
-        expect(hear_lrc(aligner),
-               "\x15"
-               "01",
-               "a bad sum");
+        align(aligner);
         robot_does(robot, "GET C,1", "OK");
         robot_does(robot, "PUT A,3", "OK");
         robot_does(robot, "GET A,9", "?30");
@@ -187,20 +210,7 @@ void run(int robot_port, int load_port, int aligner_port) {
         robot_does(robot, "JMP", "?02");
         robot.send("MVA T 0\r"); /* the host falls amid a motion */
     }
-    Line again(robot_port);
-    expect(again.until("\r\n>"), "READY", "a greeting");
-    std::string told;
-    const Clock::time_point begin = Clock::now();
-    do { /* its power went with the client */
-        again.send("STA\r");
-        told = again.until("\r\n>");
-    } while ((told.back() == '1' || told.back() == '9') && Clock::now() - begin < std::chrono::seconds(10));
-    expect(told, "0008", "no power, and the last motion has failed");
-    robot_does(again, "MTS A,1", "?10");
-    robot_does(again, "PWR 1", "OK");
-    robot_does(again, "RET", "OK");
-    robot_does(again, "HOM", "OK");
-    robot_does(again, "GET A,3", "OK");
+    come_back(robot_port);
 }
 
 } // namespace
