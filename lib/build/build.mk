@@ -179,10 +179,13 @@ main_of = $(subst /,_,$(patsubst tests/%,%,$(1)))_main
 $(foreach test,$(PROGRAM_TOGETHER) $(LIBRARY_TOGETHER),$(eval $(B)/obj/$(test).o: FLAGS += -DWH_TEST_MAIN=$(call main_of,$(test))))
 $(CXX_TESTS:%=$(B)/obj/%.o): FLAGS = $(CXX_TEST_FLAGS)
 
+# With CCACHE_DEPEND, ccache knows the headers of a file from its .d file alone. -MMD leaves system headers out, and the messages'
+# generated ones count among them: an object of other messages would be taken for a right one.
+DEPENDENCIES = $(if $(GNU),$(if $(CCACHE_DEPEND),-MD,-MMD) -MP)
 define compile
 @mkdir -p $(@D)
 @echo "  $(1)  $<"
-$(Q)$(CCACHE) $(2) $(FLAGS) $(CPPFLAGS) $(3) $(EXTRA) $(if $(GNU),-MMD -MP) -c -o $@ $<
+$(Q)$(CCACHE) $(2) $(FLAGS) $(CPPFLAGS) $(3) $(EXTRA) $(DEPENDENCIES) -c -o $@ $<
 endef
 $(if $(GNU),,$(LIBRARY_OBJECTS): $(HEADERS))
 $(B)/obj/%.o: %.c $(B)/flags

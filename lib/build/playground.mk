@@ -48,7 +48,7 @@ EM_FOREIGN := $(EM_LUA:%.c=$(PLAYGROUND)/obj/src/%.o) $(EM_OTHERS:%.c=$(PLAYGROU
 EM_BITS := -O2 -ffp-contract=off -fno-math-errno -fno-builtin-pow -DWH_NO_CONTRACTION
 EM_FLAGS := $(EM_BITS) -D_GNU_SOURCE -Wall -Wextra -Wno-missing-field-initializers $(if $(WERROR),-Werror) $(EM_INCLUDES) \
           '-DWH_JAVASCRIPT="/javascript"'
-EM_CALL = $(Q)$(CCACHE) $(EMCLANG) $(EM_TARGET) $(1) -MMD -MP -c -o $@ $<
+EM_CALL = $(Q)$(CCACHE) $(EMCLANG) $(EM_TARGET) $(1) $(DEPENDENCIES) -c -o $@ $<
 EM_TARGET = $(eval EM_TARGET := $$(shell $(EMCC) --cflags))$(EM_TARGET)
 define em_compile
 @mkdir -p $(@D)
