@@ -76,10 +76,11 @@ test: ## every test: plain, under sanitizers, in float, and end to end; installs
 	$(BUILD) B=build/float FLOAT=1 library-tests
 	@tests/run $(TESTS:%=build/%) $(SANITIZED_TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
 
+# Half the seconds of random numbers that `make test` has; a seed of one's own still plays all rounds.
 quick: ## the plain unit and property tests alone, for while you work
 	$(NEED) run test
 	$(BUILD) unit-tests
-	@tests/run $(TESTS:%=build/%)
+	@$(if $(WH_SEED)$(WH_TEST_SECONDS),,WH_TEST_SECONDS=1.5) tests/run $(TESTS:%=build/%)
 
 bench: ## how fast, against peers in the same process: minutes. BENCH=step for one subject or row, JSON=1
 	$(NEED) run test bench
