@@ -65,6 +65,15 @@ void wh_clocks_see_wafers(struct wh_clocks *clocks, const wh_state_t *state);
 void wh_clocks_see_places(struct wh_clocks *clocks, const wh_clocked_t *of, const wh_state_t *state,
                           int32_t out);
 
+/* The number of the layout's station among those that take time; WH_NONE: it takes none. */
+int32_t wh_clocks_find(const wh_mcs_t *mcs, int32_t station);
+
+/* wh_clocks_find() for the station at this stack index. */
+int32_t wh_clocks_argument(lua_State *L, const wh_mcs_t *mcs, int argument);
+
+/* One of these doors, bits by number, that is not shut, or WH_NONE. */
+int32_t wh_clocks_find_open_door(const wh_mcs_t *mcs, uint32_t doors);
+
 #define WH_CLOCKS_WHY_BYTES 200
 
 /* Why no process may begin on the wafer of the place, as `text`; null: it may. */

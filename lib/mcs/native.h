@@ -120,6 +120,7 @@ extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_clock_functions[];
+extern const luaL_Reg wh_mcs_clock_questions[];
 extern const luaL_Reg wh_mcs_command_functions[];
 extern const luaL_Reg wh_mcs_miss_functions[];
 extern const luaL_Reg wh_mcs_controller_functions[];
