@@ -100,9 +100,8 @@ static void add_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_eve
 static bool is_miss(const wh_event_t *event) {
     static const uint32_t others = 1U << WH_EVENT_NEAR_MISS | 1U << WH_EVENT_VACUUM_LOST |
                                    1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
-    const bool is_brought =
-        event->kind == WH_EVENT_FAULT_ARMED && event->parts[1] == (int32_t)WH_FAULT_WAFER_PLACED;
-    return !is_brought && ((others >> (unsigned)event->kind & 1U) != 0 || wh_print_is_complaint(event->kind));
+    return !wh_record_is_carried(event) &&
+           ((others >> (unsigned)event->kind & 1U) != 0 || wh_print_is_complaint(event->kind));
 }
 
 /* A brief run has complaints alone: all of them are there. */

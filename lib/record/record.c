@@ -182,6 +182,10 @@ bool wh_record_is_contact(wh_event_kind_t kind) {
     return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
 }
 
+bool wh_record_is_carried(const wh_event_t *event) {
+    return event->kind == WH_EVENT_FAULT_ARMED && event->parts[1] == (int32_t)WH_FAULT_WAFER_PLACED;
+}
+
 /* The first expectation that was not met. Returns false if there is none. */
 static bool find_unmet(const wh_record_t *record, char *reason, size_t size) {
     for (size_t i = 0; i < record->expectation_count; ++i) {

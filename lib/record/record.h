@@ -241,6 +241,9 @@ bool wh_record_is_complaint(wh_event_kind_t kind);
  * them and the place. */
 bool wh_record_is_contact(wh_event_kind_t kind);
 
+/* True if by this event a carrier brings or takes a wafer: no fault on purpose. */
+bool wh_record_is_carried(const wh_event_t *event);
+
 /* Writes why a run failed: the error, otherwise the first expectation, otherwise the first complaint. */
 void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
 

@@ -330,11 +330,11 @@ static void add_proximity(wh_signals_t *signals, const wh_state_t *state) {
 /* ------------------------------------------------------------------------------------------------- events */
 
 /* False for events of a normal run: tracks and tables show them. */
-static bool is_marked(wh_event_kind_t kind) {
+static bool is_marked(const wh_event_t *event) {
     static const uint32_t plain = 1U << WH_EVENT_PICKED | 1U << WH_EVENT_RELEASED |
                                   1U << WH_EVENT_HANDED_OVER | 1U << WH_EVENT_SETTLED |
                                   1U << WH_EVENT_BAD_INPUT;
-    return (plain >> (unsigned)kind & 1U) == 0;
+    return (plain >> (unsigned)event->kind & 1U) == 0 && !wh_record_is_carried(event);
 }
 
 /* The place of the event: the contact, otherwise the wafer, otherwise the gripper. Returns false if there
@@ -358,7 +358,7 @@ static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t
 static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
-        if (is_marked(event->kind)) {
+        if (is_marked(event)) {
             signals->marks = wh_array_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
                                            sizeof *signals->marks);
             wh_mark_t *mark = &signals->marks[signals->mark_count++];

@@ -253,6 +253,32 @@ static void missed_pick(void **state) {
     assert_true(signals.marks[0].has_place);
 }
 
+static size_t count_faults(void) {
+    size_t count = 0;
+    for (size_t i = 0; i < signals.mark_count; ++i) {
+        count += signals.marks[i].event.kind == WH_EVENT_FAULT_ARMED ? 1 : 0;
+    }
+    return count;
+}
+
+/* A fault on purpose is marked in the picture; a carrier that comes and goes with its wafers is none. */
+static void carriers_are_no_faults(void **state) {
+    (void)state;
+    play("lua/examples/37_late_carrier.lua");
+    size_t carried = 0;
+    for (size_t i = 0; i < run.record.event_count; ++i) {
+        carried += wh_record_is_carried(&run.record.events[i].event) ? 1 : 0;
+    }
+    assert_int_equal(carried, 5);
+    assert_int_equal(count_faults(), 0);
+}
+
+static void a_fault_is_marked(void **state) {
+    (void)state;
+    play("lua/examples/25_jam.lua");
+    assert_true(count_faults() > 0);
+}
+
 static void vacuum_that_leaks(void **state) {
     (void)state;
     play("lua/examples/05_leak.lua");
@@ -1044,6 +1070,8 @@ int main(void) {
         cmocka_unit_test_teardown(prealigner, close_run),
         cmocka_unit_test_teardown(missed_pick, close_run),
         cmocka_unit_test_teardown(vacuum_that_leaks, close_run),
+        cmocka_unit_test_teardown(carriers_are_no_faults, close_run),
+        cmocka_unit_test_teardown(a_fault_is_marked, close_run),
         cmocka_unit_test_teardown(a_gripper_that_is_elsewhere, close_run),
         cmocka_unit_test_teardown(a_near_miss_is_told_late, close_run),
         cmocka_unit_test_teardown(a_scene_is_made, close_run),
