@@ -152,6 +152,49 @@ class Playground(unittest.TestCase):
         self.assertEqual(self.hash(), "e4e148111c08e2e0")
         self.sound()
 
+    def test_quick_changes(self):
+        """What a worker was asked is answered though it is ended: by another one, or with nothing if its run is gone."""
+        page = self.page
+        page.js("""window.got = {}; const { ask, run } = Playground.runner;
+            ask('json').then((text) => { got.json = text; });
+            ask('page', 'flow.html.in').then((text) => { got.page = text.length; });
+            run(); run(); run(); run();""")
+        page.wait("return 'json' in got && 'page' in got", 30)
+        self.answered()
+        self.assertGreater(page.js("return got.page"), 100000)
+        text = page.driver.execute_async_script("Playground.runner.ask('json').then(arguments[0])")
+        self.assertEqual(json.loads(text)["hash"], "e4e148111c08e2e0")
+        self.sound()
+
+    def test_changes_are_kept(self):
+        """Whoever looks at another example finds the own changes again; Reset takes them back, of a new cell, too."""
+        page = self.page
+        layout = "lua/layouts/paper.lua"
+        original = self.text(layout)
+        self.assertTrue(page.js("return document.getElementById('reset').disabled"))
+        self.type(layout, original.replace("13.794", "13.5"))
+        changed = self.hash()
+        self.assertFalse(page.js("return document.getElementById('reset').disabled"))
+        self.choose("02_prealigner")
+        self.assertEqual(self.text(layout), original)
+        self.assertEqual(self.hash(), "ae7c10a1ef03adc0")
+        self.choose("01_transfer")
+        self.assertEqual(self.hash(), changed)
+        self.assertIn("13.5", page.js("Playground.files.show(arguments[0]); return Playground.editor.mirror.getValue()", layout))
+        before = page.js("return Playground.runner.id")
+        page.js("document.getElementById('reset').click()")
+        page.wait(f"return Playground.runner.id > {before}")
+        self.answered()
+        self.assertEqual(self.hash(), "e4e148111c08e2e0")
+        self.assertTrue(page.js("return document.getElementById('reset').disabled"))
+        page.js("const choice = document.getElementById('example'); choice.value = ''; choice.dispatchEvent(new Event('change'))")
+        new = self.text("script.lua")
+        self.assertTrue(page.js("return document.getElementById('reset').disabled"))
+        self.type("script.lua", new + "\nprint(1)\n")
+        page.js("document.getElementById('reset').click()")
+        self.assertEqual(self.text("script.lua"), new)
+        self.sound()
+
     def test_link(self):
         """A link holds script, layout and parameters, and opens to the same hash; one that is none is refused by name."""
         page = self.page

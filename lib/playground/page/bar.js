@@ -29,17 +29,16 @@
 
     const nameOf = (path) => path.replace(/^.*\//, '').replace(/\.lua$/, '').replace(/_/g, ' ');
 
-    function chosen(path) {
+    /* Another cell, or the same as it was: the parameters and the link of the one before go. */
+    function begin(open) {
         P.editor.forget();
         P.runner.parameters = [];
         bar.set.value = '';
         history.replaceState(null, '', location.href.replace(/#.*$/, ''));
-        if (path === '') {
-            P.files.openNew();
-        } else {
-            P.files.open(path, {});
-        }
+        open();
     }
+
+    const chosen = (path) => begin(() => P.files.choose(path));
 
     function examples() {
         const select = P.element('select', { id: 'example', 'aria-label': 'Cell', change: () => chosen(select.value) },
@@ -88,6 +87,7 @@
         P.on('answer', ({ answer }) => { P.host('pane-result').textContent = `Result${SIGNS[answer.outcome]}`; });
         P.on('begun', () => { bar.stop.disabled = false; });
         P.on('ended', () => { bar.stop.disabled = true; });
+        P.on('edited', () => { bar.reset.disabled = !P.files.areChanged(); });
         P.on('opened', () => {
             bar.examples.value = P.files.examples().includes(P.files.script) ? P.files.script : '';
         });
@@ -97,9 +97,11 @@
         bar.examples = examples();
         bar.stop = button('Stop', 'End the run', () => P.runner.stop(), 'stop');
         bar.stop.disabled = true;
+        bar.reset = button('Reset', 'Take back all changes of this cell', () => begin(P.files.reset), 'reset');
+        bar.reset.disabled = true;
         bar.note = P.element('span', { class: 'note', id: 'told' });
         P.host('bar').append(P.element('h1', {}, 'Waferhand', P.element('small', {}, ' playground')), bar.examples,
-            parameters(), bar.stop, P.element('span', { class: 'space' }), bar.note,
+            parameters(), bar.stop, bar.reset, P.element('span', { class: 'space' }), bar.note,
             button('Link', 'A link that holds this cell', () => P.link.take(), 'link'), saving(),
             button('About', 'What this page is, and what it cannot do', P.about.open, 'what'),
             button('\u25d0', 'Light or dark', () => bar.choose(bar.theme() === 'dark' ? 'light' : 'dark'), 'theme'));

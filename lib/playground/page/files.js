@@ -3,7 +3,7 @@
 (function (P) {
     'use strict';
 
-    const files = { carried: {}, changed: {}, script: '', shown: '', seen: [] };
+    const files = { carried: {}, changed: {}, script: '', shown: '', seen: [], left: new Map() };
     const SCRIPT = 'script.lua', LAYOUT = 'layout.lua';
 
     const NEW = {
@@ -13,6 +13,9 @@
             + '    B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 25 },\n  },\n'
             + '  wafers = { { name = "Wafer 1", station = "A", slot = 1 } },\n}\n',
     };
+
+    const originals = (script) => (script === SCRIPT ? NEW : {});
+    const hasOriginal = (script) => script === SCRIPT || script in files.carried;
 
     /* A path without its dots: "lua/examples/../layouts/paper.lua" is "lua/layouts/paper.lua". */
     function plain(path) {
@@ -64,8 +67,13 @@
         }
     };
 
-    /* Begins with a script: a carried one, or an own one whose files are given. */
+    /* True if the cell that is shown is not as the page brought it. */
+    files.areChanged = () => hasOriginal(files.script) && Object.entries(files.changed)
+        .some(([path, content]) => content !== originals(files.script)[path] && content !== files.carried[path]);
+
+    /* Begins with a script: a carried one, or an own one whose files are given. Changes of the one before are kept. */
     files.open = function (script, given) {
+        files.left.set(files.script, files.changed);
         files.changed = Object.assign({}, given);
         files.script = script;
         files.seen = [];
@@ -79,7 +87,14 @@
         P.tell('opened', path);
     };
 
-    files.openNew = () => files.open(SCRIPT, Object.assign({}, NEW));
+    /* Chooses an example, or '' for a new cell: as it was left, if it was changed. */
+    files.choose = function (path) {
+        const script = path || SCRIPT;
+        files.open(script, files.left.get(script) || originals(script));
+    };
+
+    /* Takes back all changes of the cell that is shown. */
+    files.reset = () => files.open(files.script, originals(files.script));
 
     const bytesOf = (content) => (typeof content === 'string' ? content : P.bytesOf(content.base64));
 

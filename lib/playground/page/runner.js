@@ -42,11 +42,33 @@
         }
     }
 
+    const isOfRun = (kind) => kind === 'report' || kind === 'json';
+
+    function post(asked, worker) {
+        waiting.push(Object.assign(asked, { worker }));
+        worker.postMessage({ kind: asked.kind, name: asked.name, id: runner.id });
+    }
+
+    /* Asks another worker what one that has ended has not answered. Questions about its run have no answer any more. */
+    function askAgain(ended) {
+        waiting.splice(0).forEach((asked) => {
+            if (asked.worker !== ended) {
+                waiting.push(asked);
+            } else if (isOfRun(asked.kind)) {
+                asked.done(null);
+            } else {
+                post(asked, runner.worker);
+            }
+        });
+    }
+
     /* The worker that is busy goes; the other one takes over. */
     function replace() {
-        runner.worker.terminate();
+        const ended = runner.worker;
+        ended.terminate();
         runner.worker = runner.spare || make();
         runner.spare = null;
+        askAgain(ended);
         setTimeout(() => { runner.spare = runner.spare || make(); }, 0);
     }
 
@@ -69,11 +91,10 @@
             request: { script: P.files.script, parameters: runner.parameters, budget: BUDGET } });
     };
 
-    /* Promises a text: "page" with its template's name, "definitions"; "report" and "json" of the last run. */
+    /* Promises a text: "page" with its template's name, "definitions"; "report" and "json" of the last run, or null if that is
+     * gone. */
     runner.ask = (kind, name) => new Promise((done) => {
-        waiting.push({ kind, name, done });
-        const isOfRun = kind === 'report' || kind === 'json';
-        (isOfRun ? runner.worker : runner.spare || runner.worker).postMessage({ kind, name, id: runner.id });
+        post({ kind, name, done }, isOfRun(kind) ? runner.worker : runner.spare || runner.worker);
     });
 
     runner.start = async function () {
