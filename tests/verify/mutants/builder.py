@@ -1,6 +1,7 @@
 """Compiles mutants and links them with the rest of the library; the tests are built already."""
 
 import filecmp
+import functools
 import glob
 import hashlib
 import os
@@ -53,6 +54,7 @@ class Builder:
             return False
 
     @staticmethod
+    @functools.lru_cache(maxsize=None)
     def symbols(path, kind):
         """Of an object: `defined` or `undefined`."""
         out = subprocess.run(["nm", "-g", "--format=just-symbols", f"--{kind}-only", path], capture_output=True,
@@ -63,7 +65,7 @@ class Builder:
         """The sources whose code a test can run: those that it needs, and those that these need."""
         objects = {source: self.object_of(source, self.originals) for source in self.sources}
         defined = {source: self.symbols(path, "defined") for source, path in objects.items()}
-        wanted, reached = self.symbols(test_object, "undefined"), set()
+        wanted, reached = set(self.symbols(test_object, "undefined")), set()
         while True:
             more = {source for source in objects if source not in reached and defined[source] & wanted}
             if not more:
