@@ -2,14 +2,19 @@
 -- A motion is answered when it begins; the next one, and `waitForEom`, when it has ended; picks, places and homing at their end. Two
 -- ports share one state: `status` asks and stops, `motion` also moves. Motions need power (`hp 1`) and `attach 1`; both go when the
 -- client at `motion` goes. Joints are 1 z, 2 shoulder, 3 elbow, 4 wrist, 5 gripper, 6 rail; mm and degrees. A location names the
--- nest that is nearest to it. A robot without one of the joints 1 to 4 has no answer to `wherej`: -2800. A tester may tell "estop on",
+-- nest that is nearest to it; the hand goes where the location is, so one that was taught 3 mm aside picks 3 mm aside. A robot without one of the joints 1 to 4 has no answer to `wherej`: -2800. A tester may tell "estop on",
 -- "hand elbow 170" (moved by hand, or back without a value) and "overshoot elbow 134.062", beyond its travel, which homing mends.
 -- Power, brakes, emergency stop and overshoot are the state of the robot's controller, `now.controller`. A set brake holds all joints until
 -- it is released, or power comes. While joints are free, `freemode`, nothing moves.
+-- A profile's speed counts, and the lesser of its acceleration and deceleration, for both ends of a motion are alike. Picks and
+-- places go by profile 1. A straight motion at 100 % has 500 mm/s, or what the joints allow. A simulated joint ends where it was
+-- sent, so each `inrange` from 0 on is met at once; -1, motions that blend, is refused. Ramps and `speed2` are kept and told, and
+-- change nothing.
 
 local AXES = { "z", "theta", "forearm", "yaw", "gripper", "rail" }
 local JOINTS = { z = 1, shoulder = 2, elbow = 3, wrist = 4, gripper = 5, rail = 6 }
 local MOST = 20       -- locations, and profiles
+local STRAIGHT = 500  -- mm/s: 100 % of a straight motion
 local NEAR = 25       -- mm: a location farther from every nest is none
 local ELBOWS = { "right", "left" }
 local TURNED = 0x1000 -- of a configuration: the wrist within half a turn
@@ -165,12 +170,21 @@ local function check_motion(request, now)
   check_joints(now)
 end
 
+local function part(percent)
+  return math.min(1, math.max(1e-3, percent / 100))
+end
+
+local function speed_of(words)
+  return part(words[1] * monitor / 100)
+end
+
+local function acceleration_of(words)
+  return part(math.min(words[3], words[4]))
+end
+
 -- The parts of the limits of a profile.
 local function shares(words)
-  local function part(percent)
-    return math.min(1, math.max(1e-3, percent * monitor / 1e4))
-  end
-  return ("speed=%.6g acceleration=%.6g"):format(part(words[1]), math.min(1, math.max(1e-3, words[3] / 100)))
+  return ("speed=%.6g acceleration=%.6g"):format(speed_of(words), acceleration_of(words))
 end
 
 -- "MOVE ..." to joints, by place; those that are nil stay. The gripper opens as told.
@@ -205,7 +219,8 @@ local function lines_of_pose(pose, config, words, now)
   elseif side and side ~= ELBOWS[elbow_of(now)] then
     fail(-1042, "Can't change robot config on a straight line")
   end
-  return { ("LINE x=%.9f y=%.9f z=%.9f acceleration=%.6g"):format(pose[1], pose[2], pose[3], math.min(1, words[3] / 100)), to }
+  return { ("LINE x=%.9f y=%.9f z=%.9f speed=%.6g acceleration=%.6g"):format(pose[1], pose[2], pose[3],
+    STRAIGHT * speed_of(words), acceleration_of(words)), to }
 end
 
 -- Where a location is: x, y, z, yaw.
@@ -249,6 +264,15 @@ local function motion(make)
   end }
 end
 
+-- How far the location is from the nest, along the axes of its slot.
+local function corrections(point, nest)
+  local slot = host.pose(nest.station, nest.slot)
+  local x, y, yaw = point[1] - slot.x, point[2] - slot.y, math.rad(slot.yaw)
+  local turn = (point[4] - slot.yaw + 180) % 360 - 180
+  return ("dx=%.9f dy=%.9f dz=%.9f turn=%.9f"):format(x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw),
+    point[3] - slot.z, turn)
+end
+
 -- A pick or a place at a location: the nest that is nearest to it.
 local function transfer(word)
   return function(request, now)
@@ -259,7 +283,7 @@ local function transfer(word)
     if not nest or nest.distance > NEAR then
       fail(-1040, ("Position too far: no nest within %d mm of the location"):format(NEAR))
     end
-    local line = ("%s %s %d"):format(word, nest.station, nest.slot)
+    local line = ("%s %s %d %s %s"):format(word, nest.station, nest.slot, corrections(point, nest), shares(profiles[1]))
     if cut_short then
       cut_short = false
       return { "RECOVER", line }
@@ -284,14 +308,24 @@ local function value(read, write)
   end)
 end
 
+-- The limits of a profile's fields.
+local LEAST, HIGHEST = { 0.001, 0, 0.001, 0.001, 0, 0, 0, -1 }, { [7] = 100, [8] = 1 }
+
+local function read_field(place, word)
+  if place == 7 and tonumber(word) == -1 then
+    fail(-705, "Value too small: -1: motions that blend are not simulated")
+  end
+  return number(word, LEAST[place], HIGHEST[place])
+end
+
 -- A field of a profile.
-local function of_profile(place, least, most, told)
+local function of_profile(place, told)
   return ask(function(words)
     local list = profile(words[1])
     if not words[2] then
       return text_of(whole(words[1])) .. " " .. (told and told(list[place]) or text_of(list[place] + 0.0))
     end
-    list[place] = number(words[2], least, most)
+    list[place] = read_field(place, words[2])
     return ""
   end)
 end
@@ -380,17 +414,19 @@ local commands = {
   halt = { does = "STOP" },
   exit = { does = "LOCAL", closes = true, run = function() return "" end },
 
-  speed = of_profile(1, 0.001), speed2 = of_profile(2, 0), accel = of_profile(3, 0.001), decel = of_profile(4, 0.001),
-  accramp = of_profile(5, 0), decramp = of_profile(6, 0), inrange = of_profile(7, -1, 100),
-  straight = of_profile(8, -1, 1, function(set) return set ~= 0 and "True" or "False" end),
+  speed = of_profile(1), speed2 = of_profile(2), accel = of_profile(3), decel = of_profile(4),
+  accramp = of_profile(5), decramp = of_profile(6), inrange = of_profile(7),
+  straight = of_profile(8, function(set) return set ~= 0 and "True" or "False" end),
   profile = ask(function(words)
     local list = profile(words[1])
     if not words[2] then
       return text_of(whole(words[1]), table.unpack(list))
     end
-    for place, set in ipairs(numbers(words, 2, 8)) do
-      list[place] = set
+    local set = {}
+    for place = 1, 8 do
+      set[place] = read_field(place, words[place + 1])
     end
+    table.move(set, 1, 8, 1, list)
     return ""
   end),
 
@@ -621,6 +657,12 @@ local function told(request, result)
   return ("%s %s"):format(result.code, result.text)
 end
 
+-- These end a motion in its middle.
+local CUTS = {}
+for _, name in ipairs({ "STOPPED", "NO_POWER", "BRAKES_SET", "EMERGENCY_STOP", "SERVO_ERROR" }) do
+  CUTS[wh.errors[name].number] = true
+end
+
 -- Moved by hand, stopped by hand.
 local function tester(text)
   local what, joint, at = text:match("^(%a+)%s+(%a+)%s*(%S*)$")
@@ -645,9 +687,10 @@ return {
   in_order = true,
   framing = { ends = { "\r\n", "\n" }, longest = 512 },
   begins = "CONTROLLER power=off",
+  events = { "error" },
   gone = function(client)
     if client.port == "motion" then
-      attached, rail_next, free = false, nil, {}
+      attached, rail_next, free, cut_short = false, nil, {}, true
       return "CONTROLLER power=off"
     end
   end,
@@ -661,9 +704,11 @@ return {
       return ("%s %s"):format(failure.code, failure.detail ~= "" and failure.detail or failure.text)
     end,
     bad = function(reason) return "-712 Invalid syntax: " .. reason end,
+    -- Nobody is told: a motion that was answered when it began has ended in its middle.
+    event = function(event) cut_short = cut_short or CUTS[event.value] or false end,
   },
   errors = {
-    NO_SUCH_COMMAND = -2805, NOT_HOMED = -1021, LIMIT_EXCEEDED = -1012, OUT_OF_REACH = -1040, BUSY = -1050, STOPPED = -1045,
+    NO_SUCH_COMMAND = -2805, NOT_HOMED = -1021, LIMIT_EXCEEDED = -1012, OUT_OF_REACH = -1040, CORRECTION_TOO_LARGE = -1040, BUSY = -1050, STOPPED = -1045,
     NO_POWER = -1046, EMERGENCY_STOP = -1028, SOFT_LIMIT = -1012,
     COLLISION_AHEAD = -3102, WAFER_ALREADY_THERE = -3100, WAFER_ON_GRIPPER = -3101, WAFER_LOST = -3103, BAD_LIMITS = -706, NO_WAFER_ON_GRIPPER = -3104,
   },
