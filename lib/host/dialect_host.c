@@ -110,11 +110,16 @@ static int own_unit(lua_State *L) {
     return 1;
 }
 
-/* host.mechanism(): our name of the robot or station that this controller stands for, as it is typed. */
+/* host.mechanism(otherwise): our name of the robot or station that this controller stands for, as it is
+ * typed. One that stands for several has `otherwise`; without that it is refused. */
 static int own_mechanism(lua_State *L) {
     const wh_dialect_t *dialect = find_self(L);
     const bool is_robot = dialect->mechanism == WH_MECHANISM_ROBOT;
     const wh_status_t refusal = is_robot ? WH_STATUS_NO_SUCH_ROBOT : WH_STATUS_NO_SUCH_STATION;
+    if (!dialect->place.stands_for && !lua_isnoneornil(L, 1)) {
+        lua_settop(L, 1);
+        return 1;
+    }
     if (!dialect->place.stands_for) {
         return refuse_by(L, refusal, "this controller stands for several (expected --mechanism)");
     }

@@ -139,20 +139,20 @@ static int push_asked_robot(lua_State *L) {
     return 1;
 }
 
+/* native.asked_station(): the station whose own controller asked the question, or nil. */
+static int push_asked_station(lua_State *L) {
+    lua_pushstring(L, wh_mcs_of(L)->wanted.asker.station);
+    return 1;
+}
+
 /* native.is_part(): true for a line that UNDO takes back with the one before it. */
 static int push_is_part(lua_State *L) {
     lua_pushboolean(L, wh_mcs_of(L)->wanted.asker.is_part);
     return 1;
 }
 
-const luaL_Reg wh_mcs_job_functions[] = {{"is_part", push_is_part},
-                                         {"asked_robot", push_asked_robot},
-                                         {"next_job", next_job},
-                                         {"begin_job", begin_job},
-                                         {"end_line", end_line},
-                                         {"has_jobs", has_jobs},
-                                         {"is_told", is_told_to_end},
-                                         {"heed", heed_end},
-                                         {"command_waits", note_wait},
-                                         {"refuse_wait", refuse_wait},
-                                         {NULL, NULL}};
+const luaL_Reg wh_mcs_job_functions[] = {
+    {"is_part", push_is_part},    {"asked_robot", push_asked_robot}, {"asked_station", push_asked_station},
+    {"next_job", next_job},       {"begin_job", begin_job},          {"end_line", end_line},
+    {"has_jobs", has_jobs},       {"is_told", is_told_to_end},       {"heed", heed_end},
+    {"command_waits", note_wait}, {"refuse_wait", refuse_wait},      {NULL, NULL}};

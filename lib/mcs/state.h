@@ -182,9 +182,10 @@ typedef enum {
 
 /* The controller that asks for a line, for its own answers and errors. Zero: none. */
 typedef struct {
-    int32_t controller; /* from 1, the one whose question is answered */
-    int32_t robot;      /* from 1, the robot whose own controller asks */
-    bool is_part;       /* the line belongs to the one before it */
+    int32_t controller;  /* from 1, the one whose question is answered */
+    int32_t robot;       /* from 1, the robot whose own controller asks */
+    const char *station; /* whose own controller asks; null: no station's */
+    bool is_part;        /* the line belongs to the one before it */
 } wh_mcs_asker_t;
 
 /* The caller's wishes for a run; all may be zero. */
@@ -235,6 +236,7 @@ typedef struct {
     wh_vacuum_watch_t watch;                  /* of the running segment */
     size_t kept;                              /* its number in `kept`, from 1; 0: none */
     uint32_t axes;                            /* bits: the axes of the running command */
+    bool slows_down;                          /* the running segment: a STOP has come */
     int callers[WH_MCS_CALLERS];          /* the lines that called the running command's line; 0: no more */
     char module[WH_SANDBOX_MODULE_BYTES]; /* the place in a module where that line led; empty: none */
     char word[WH_MCS_WORD]; /* the script's last word, which an error outside of a command names */

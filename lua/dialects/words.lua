@@ -174,6 +174,16 @@ local function told(word)
   end
 end
 
+-- Our name of a load port that this controller may tell of: a load port's own controller knows no other.
+local function own_port(theirs, status)
+  local name = host.station(theirs)
+  local own = host.mechanism(name)
+  if not status[name .. ".is"] or own ~= name and status[own .. ".is"] then
+    host.refuse("NO_SUCH_STATION", name)
+  end
+  return name
+end
+
 -- RQ PORT LP1: what a load port does, which carrier it has and what is left of the step: PORT CARRIER C1 STEP TP3 OPEN.
 local function port(name, status)
   local list = { "PORT" }
@@ -356,8 +366,7 @@ return {
       return result.values.codes and map(request, result) or host.refuse("NOT_MAPPED", request.words[3])
     end },
     ["RQ PORT"] = { does = "STATUS", answer = function(request, result)
-      local name = host.station(request.words[3] or "")
-      return port(name, result.status)
+      return port(own_port(request.words[3] or "", result.status), result.status)
     end },
     ["RQ AXES"] = { does = "AXES", answer = told("AXES") },
     ["RQ WAFERS"] = { does = "WHERE", run = with_name("WHERE", 3, true), answer = told("WAFERS") },

@@ -35,7 +35,7 @@ return function(native, wh)
   end
 
   function lookup.bound_station()
-    return tasks.current().station
+    return tasks.current().station or native.asked_station()
   end
 
   lookup.phase, lookup.last_robot = arm.phase, arm.last_robot

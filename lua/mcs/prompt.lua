@@ -91,7 +91,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
   local function check_own(command, arguments, options, other)
     local robot, station = lookup.bound(), lookup.bound_station()
     local own = station or robot and native.layout.robots[robot].name
-    if not own or command.asks and not command.of_robot then
+    if not own or command.asks and not (robot and command.of_robot or station and command.of_station) then
       return
     end
     if robot and other and other ~= robot then

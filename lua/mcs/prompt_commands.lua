@@ -3,7 +3,8 @@
 -- takes     kinds of the arguments in order; the last one may be left out if `optional`, repeated if `repeated`
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       a function of prompt_answers.lua, in most cases
--- of_robot  true: a question; at a robot's own port it asks only that robot
+-- of_robot    true: a question; at a robot's own port it asks only that robot
+-- of_station  true: likewise, at a load port's or an aligner's own port
 -- asks      true: it has no record, so injected errors are looked for here
 -- keeps     true: it changes nothing that UNDO could take back, or handles UNDO itself
 -- alone     true: not while a task is alive
@@ -275,7 +276,7 @@ return function(native, commands, answers, lookup, tokens, states, background, o
                 does = "a carrier comes to a load port, at once or at a time in s; wafers=3 or wafers=1,3; slots=3:crossed" },
     PORT = { takes = { "station", "port_state" }, run = answers.moving(commands.port),
              does = "brings a load port with its carrier to this state, and waits until it has it" },
-    PORT_MAP = { takes = { "station" }, run = answers.port_map, asks = true, keeps = true,
+    PORT_MAP = { takes = { "station" }, run = answers.port_map, asks = true, of_station = true, keeps = true,
                  does = "the codes by slot that a load port has mapped of its carrier, as MAP has them, or none" },
     TAKE_AWAY = { takes = { "station" }, run = answers.moving(commands.take_away),
                   does = "the carrier of a load port goes, with what lies in it" },
