@@ -63,15 +63,36 @@ static void add_slices(wh_mcs_kept_t *kept, size_t number, int64_t slices) {
     }
 }
 
+/* Keeps where a motion that slows down stands in the slice that goes out. */
+static void keep_place(wh_mcs_t *mcs, size_t number) {
+    wh_mcs_kept_t *kept = &mcs->kept;
+    kept->places =
+        wh_array_grow(kept->places, kept->place_count, &kept->place_capacity, sizeof *kept->places);
+    wh_kept_place_t *place = &kept->places[kept->place_count++];
+    place->seq = mcs->command.seq;
+    place->axes = kept->motions[number - 1].axes;
+    place->command = kept->motions[number - 1].command;
+    memcpy(place->at, mcs->command.axes, sizeof place->at);
+}
+
+/* The slices of a segment; of one that slows down, the place in the one slice that goes out. */
+static void count_segment(wh_mcs_t *mcs, size_t number, bool slows_down, int64_t slices) {
+    if (!slows_down) {
+        add_slices(&mcs->kept, number, slices);
+    } else if (number > 0 && slices > 0) {
+        keep_place(mcs, number);
+    }
+}
+
 /* Counts slices of all running segments. */
 static void count_slices(wh_mcs_t *mcs, int64_t slices) {
     if (!mcs->lanes) {
-        add_slices(&mcs->kept, mcs->running.kept, slices);
+        count_segment(mcs, mcs->running.kept, mcs->running.slows_down, slices);
     }
     for (size_t i = 0; mcs->lanes && i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
         const bool goes = lane->is_busy && !lane->is_held && !wh_mcs_is_held_back(mcs, lane);
-        add_slices(&mcs->kept, goes ? lane->kept : 0, slices);
+        count_segment(mcs, goes ? lane->kept : 0, lane->stop.ramp.is_on, slices);
     }
 }
 
@@ -139,6 +160,9 @@ void wh_mcs_drop_slice(wh_mcs_t *mcs) {
         return;
     }
     count_slices(mcs, -1);
+    while (kept->place_count > 0 && kept->places[kept->place_count - 1].seq == seq) {
+        --kept->place_count;
+    }
     while (kept->valves_count > 0 && kept->valves[kept->valves_count - 1].seq == seq) {
         --kept->valves_count;
     }
@@ -152,6 +176,7 @@ void wh_mcs_drop_slice(wh_mcs_t *mcs) {
 
 void wh_mcs_free_kept(wh_mcs_kept_t *kept) {
     free(kept->motions);
+    free(kept->places);
     free(kept->valves);
     free(kept->faults);
     free(kept->orders);

@@ -1,5 +1,6 @@
 /* The inputs of the simulator, as `--segments` writes them: motions, valves, faults, and orders to edge
- * sensors and beams, each with its slice. Waiting is not kept: the slices tell it. */
+ * sensors and beams, each with its slice. Waiting is not kept: the slices tell it. A motion that a STOP slows
+ * down is no segment any more: each slice of that is kept as a place. */
 #ifndef WH_MCS_KEPT_H
 #define WH_MCS_KEPT_H
 
@@ -27,6 +28,14 @@ typedef struct {
     int32_t command;
 } wh_kept_valves_t;
 
+/* A slice of a motion that slows down: where its axes stand. */
+typedef struct {
+    int64_t seq;
+    uint32_t axes; /* bits */
+    int32_t command;
+    wh_real_t at[WH_AXES];
+} wh_kept_place_t;
+
 typedef struct {
     wh_kept_motion_t *motions;
     size_t motion_count, motion_capacity;
@@ -36,7 +45,8 @@ typedef struct {
     size_t fault_count, fault_capacity;
     wh_played_order_t *orders;
     size_t order_count, order_capacity;
-    bool slows_down; /* a STOP made a motion slower along its way, which no segment has */
+    wh_kept_place_t *places;
+    size_t place_count, place_capacity;
 } wh_mcs_kept_t;
 
 /* Keeps the segment that `begun` has just begun, if it moves anything: of the axes in `axes` alone. Returns

@@ -73,13 +73,12 @@ const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes) {
     return requested || mcs->stop.is_asked ? "by a request" : "by stop_in";
 }
 
-/* The record and a study's decisions then know of it. */
+/* A study's decisions then know of it. */
 static bool slows_down(wh_mcs_t *mcs) {
     const int32_t stop = mcs->layout->stop;
     const bool is_usual = stop == WH_LAYOUT_STOP_USUAL && mcs->wanted.slows_down;
     const bool slows = stop == WH_LAYOUT_STOP_RAMP || is_usual;
     if (slows) {
-        mcs->kept.slows_down = true;
         wh_decisions_measured(mcs->wanted.decisions, "a STOP that slows down");
     }
     return slows;
@@ -180,7 +179,9 @@ static void slow_down(lua_State *L, wh_mcs_t *mcs) {
     wh_real_t before[WH_AXES];
     memcpy(before, mcs->track.axes, sizeof before);
     while (mcs->stop.refused == 0 && !wh_sandbox_stopping(mcs->sandbox) && wh_ramp_next(&ramp, &mcs->track)) {
+        mcs->running.slows_down = true;
         const wh_status_t status = wh_mcs_play_slice(mcs, before);
+        mcs->running.slows_down = false;
         if (status != WH_OK) {
             refuse_slice(L, mcs, status);
         }

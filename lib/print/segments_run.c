@@ -106,20 +106,44 @@ static void add_valves(wh_segments_t *segments, const wh_kept_valves_t *valves) 
     row->bits = valves->open;
 }
 
-/* Both lists are in order of time. A segment that took no slice moved nothing. */
+static void add_place(wh_segments_t *segments, uint32_t axes, const wh_real_t at[WH_AXES], int64_t seq,
+                      int32_t origin) {
+    wh_played_row_t *row = add_row(segments, WH_PLAYED_PLACE, origin);
+    row->after = seq - 1;
+    row->bits = axes;
+    add_places(segments, axes, at, true);
+}
+
+/* Valves and places that come before this slice. */
+static void add_until(wh_segments_t *segments, const wh_mcs_kept_t *kept, size_t *valves, size_t *places,
+                      int64_t after) {
+    for (;;) {
+        const int64_t valve = *valves < kept->valves_count ? kept->valves[*valves].seq - 1 : INT64_MAX;
+        const int64_t place = *places < kept->place_count ? kept->places[*places].seq - 1 : INT64_MAX;
+        const int64_t next = valve < place ? valve : place;
+        if (next == INT64_MAX || next > after) {
+            return;
+        }
+        if (valve <= place) {
+            add_valves(segments, &kept->valves[(*valves)++]);
+        } else {
+            const wh_kept_place_t *at = &kept->places[(*places)++];
+            add_place(segments, at->axes, at->at, at->seq, at->command);
+        }
+    }
+}
+
+/* All lists are in order of time. A segment that took no slice moved nothing. */
 static void add_rows(wh_segments_t *segments, const wh_mcs_kept_t *kept) {
     size_t valves = 0;
+    size_t places = 0;
     for (size_t i = 0; i < kept->motion_count; ++i) {
-        while (valves < kept->valves_count && kept->valves[valves].seq - 1 <= kept->motions[i].after) {
-            add_valves(segments, &kept->valves[valves++]);
-        }
+        add_until(segments, kept, &valves, &places, kept->motions[i].after);
         if (kept->motions[i].slices > 0) {
             add_motion(segments, &kept->motions[i]);
         }
     }
-    while (valves < kept->valves_count) {
-        add_valves(segments, &kept->valves[valves++]);
-    }
+    add_until(segments, kept, &valves, &places, INT64_MAX);
 }
 
 /* ------------------------------------------------------------------------------------------------- parts */
@@ -271,9 +295,6 @@ const char *wh_segments_make(wh_segments_t *segments, const wh_mcs_t *mcs, const
     if (segments->layout->tool) {
         return "robots with axes";
     }
-    if (kept->slows_down) {
-        return "a script without a STOP that slows down";
-    }
     if (record->missed > 0) {
         return "a simulator that misses no slice";
     }
@@ -315,10 +336,7 @@ void wh_segments_keep(wh_segments_t *segments, const wh_command_t *command, size
     const uint32_t moved = find_moved(segments, command);
     const uint32_t open = find_open(command);
     if (moved != 0) {
-        wh_played_row_t *row = add_row(segments, WH_PLAYED_PLACE, (int32_t)line);
-        row->after = command->seq - 1;
-        row->bits = moved;
-        add_places(segments, moved, command->axes, true);
+        add_place(segments, moved, command->axes, command->seq, (int32_t)line);
         memcpy(segments->q, command->axes, sizeof segments->q);
     }
     if (open != segments->open) {
