@@ -126,7 +126,8 @@ static bool say_frame(wh_dialect_t *dialect, const char *body) {
     if (!print_unit(dialect, body)) {
         return false;
     }
-    const wh_decoded_t outcome = wh_dialect_decode(dialect, &client, body, strlen(body), &request, &failure);
+    const wh_frame_t said = {.kind = WH_FRAME_GOOD, .body = (const uint8_t *)body, .body_size = strlen(body)};
+    const wh_decoded_t outcome = wh_dialect_decode(dialect, &client, &said, &request, &failure);
     bool good = outcome != WH_DECODED_MISTAKE;
     if (outcome == WH_DECODED_REQUEST) {
         good = say_request(dialect, &request);

@@ -122,7 +122,8 @@ static int decode_frame(lua_State *L) {
     wh_dialect_push(L, "decode", NULL);
     lua_pushlstring(L, it->frame, it->size);
     wh_dialect_push_client(L, it->client);
-    lua_call(L, 2, 1);
+    lua_pushlstring(L, it->end ? (const char *)it->end->bytes : "", it->end ? it->end->size : 0);
+    lua_call(L, 3, 1);
     if (lua_isnil(L, -1)) {
         return 0;
     }
@@ -142,10 +143,15 @@ static int decode_frame(lua_State *L) {
     return 0;
 }
 
-wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const char *frame,
-                               size_t size, wh_request_t *request, wh_failure_t *failure) {
-    wh_dialect_call_t it = {
-        .dialect = dialect, .client = client, .frame = frame, .size = size, .request = request};
+wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const wh_frame_t *frame,
+                               wh_request_t *request, wh_failure_t *failure) {
+    const bool has_end = frame->end < dialect->framing.end_count;
+    wh_dialect_call_t it = {.dialect = dialect,
+                            .client = client,
+                            .frame = (const char *)frame->body,
+                            .size = frame->body_size,
+                            .end = has_end ? &dialect->framing.ends[frame->end] : NULL,
+                            .request = request};
     *request = (wh_request_t){.reference = LUA_NOREF};
     memset(failure, 0, sizeof *failure);
     const bool done = wh_dialect_call(dialect, decode_frame, &it);

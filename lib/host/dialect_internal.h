@@ -33,6 +33,7 @@ typedef struct {
     const wh_client_t *client;
     const char *frame;
     size_t size;
+    const wh_framing_mark_t *end; /* null: the frame has none */
     char *unit;
     bool *stops;
     wh_now_t *ask;

@@ -97,9 +97,10 @@ static size_t find_plain(wh_framer_t *framer, const uint8_t *body, size_t size, 
     return count;
 }
 
-/* The line has come to an end of `end_size` bytes, or to the sum behind it. */
-static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
+/* The line has come to that end, if there are ends, or to the sum behind it. */
+static void judge_line(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
+    const size_t end_size = framing->end_count > 0 ? framing->ends[end].size : 0;
     const size_t from = start_size(framer) + framing->length.size;
     const size_t digits = wh_framing_sum_size(framing);
     const size_t around = digits > 0 ? framing->separator.size + digits : 0;
@@ -120,6 +121,7 @@ static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) 
     if (kind == WH_FRAME_GOOD) {
         frame->body = plain;
         frame->body_size = size;
+        frame->end = end;
     }
 }
 
@@ -191,7 +193,7 @@ static void take_end(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
             refuse_length(framer, WH_FRAME_TOO_LONG, frame);
         }
     } else {
-        judge_line(framer, size, frame);
+        judge_line(framer, end, frame);
     }
 }
 
@@ -217,7 +219,7 @@ static void judge_counted(wh_framer_t *framer, wh_frame_t *frame) {
     if (size > 0 && memcmp(framer->line + framer->size - size, framing->ends[0].bytes, size) != 0) {
         tell_frame(framer, WH_FRAME_NO_END, framer->size, 0, framing->start_count, frame);
     } else {
-        judge_line(framer, size, frame);
+        judge_line(framer, 0, frame);
     }
 }
 
@@ -225,7 +227,7 @@ static void judge_counted(wh_framer_t *framer, wh_frame_t *frame) {
 static void await_sum(wh_framer_t *framer, wh_frame_t *frame) {
     if (framer->size == framer->whole) {
         framer->whole = 0;
-        judge_line(framer, framer->framing.ends[0].size, frame);
+        judge_line(framer, 0, frame);
     }
 }
 

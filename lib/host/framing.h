@@ -139,6 +139,7 @@ typedef struct {
     const uint8_t *body; /* of a good frame, without start, length, escapes, sum and end; else as `bytes` */
     size_t body_size;
     size_t start; /* of frames with a start, which one; else 0 */
+    size_t end;   /* of a good frame, which of the ends ended it; 0 also without ends */
 } wh_frame_t;
 
 /* The counts of a line. */

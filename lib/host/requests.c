@@ -66,7 +66,8 @@ static void execute_query(wh_controller_t *controller, const wh_request_t *reque
     const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
     const wh_mcs_asker_t asker = {
         .controller = wh_host_plays_jobs(controller->host) ? wh_controller_job(controller) : 0,
-        .robot = is_robot ? controller->mechanism.index + 1 : 0};
+        .robot = is_robot ? controller->mechanism.index + 1 : 0,
+        .station = is_robot ? NULL : controller->mechanism.name};
     const wh_status_t status = wh_session_execute_for(session, &asker, line, answer, WH_SESSION_ANSWER_BYTES);
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, status, answer, 0);
 }
@@ -381,10 +382,10 @@ bool wh_host_go_on(wh_host_t *host) {
 
 /* The last frame again, with its number: the answer may have been lost. */
 static bool is_repeated(wh_controller_t *controller, const wh_request_t *request, const wh_frame_t *frame) {
-    const bool is_known = request->sequence[0] != '\0' &&
-                          (controller->repeat.reply.text || wh_controller_owes(controller)) &&
-                          frame->body_size == controller->repeat.last_size &&
-                          memcmp(frame->body, controller->repeat.last, frame->body_size) == 0;
+    const bool is_known =
+        request->sequence[0] != '\0' && (controller->repeat.reply.text || wh_controller_owes(controller)) &&
+        frame->body_size == controller->repeat.last_size && frame->end == controller->repeat.last_end &&
+        memcmp(frame->body, controller->repeat.last, frame->body_size) == 0;
     if (is_known) {
         ++controller->counters.repeated;
         wh_controller_tell_again(controller, &controller->repeat.reply); /* nothing if it is still to come */
@@ -403,6 +404,7 @@ static void take_decoded(wh_controller_t *controller, const wh_frame_t *frame, w
         controller->repeat.reply.text = NULL;
         memcpy(controller->repeat.last, frame->body, frame->body_size);
         controller->repeat.last_size = frame->body_size;
+        controller->repeat.last_end = frame->end;
         controller->repeat.remembers = request->sequence[0] != '\0';
     }
     if (is_request) {
@@ -422,8 +424,7 @@ static void take_good(wh_controller_t *controller, const wh_frame_t *frame) {
     const int64_t begin_us = wh_host_now(controller->host);
     ++controller->counters.frames;
     const wh_client_t client = {controller->role, controller->line.client};
-    const wh_decoded_t decoded = wh_dialect_decode(controller->dialect, &client, (const char *)frame->body,
-                                                   frame->body_size, &request, &failure);
+    const wh_decoded_t decoded = wh_dialect_decode(controller->dialect, &client, frame, &request, &failure);
     take_decoded(controller, frame, decoded, &request, &failure);
     wh_dialect_forget(controller->dialect, &request);
     controller->host->clock.lua_us += wh_host_now(controller->host) - begin_us;

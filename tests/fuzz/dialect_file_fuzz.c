@@ -129,8 +129,8 @@ static void run(const wh_request_t *request, size_t size) {
 static void take(const uint8_t *body, size_t size) {
     wh_request_t request;
     wh_failure_t failure;
-    const wh_decoded_t outcome =
-        wh_dialect_decode(&dialect, &client, (const char *)body, size, &request, &failure);
+    const wh_frame_t frame = {.kind = WH_FRAME_GOOD, .body = body, .body_size = size};
+    const wh_decoded_t outcome = wh_dialect_decode(&dialect, &client, &frame, &request, &failure);
     if (outcome == WH_DECODED_MISTAKE) {
         check_message();
     } else if (outcome == WH_DECODED_REQUEST) {

@@ -148,8 +148,7 @@ static void take(const wh_frame_t *frame) {
         tell(WH_ENCODE_BAD, &told);
         return;
     }
-    const wh_decoded_t outcome =
-        wh_dialect_decode(dialect, &client, (const char *)frame->body, frame->body_size, &request, &failure);
+    const wh_decoded_t outcome = wh_dialect_decode(dialect, &client, frame, &request, &failure);
     check_outcome(outcome);
     if (outcome == WH_DECODED_REFUSED) {
         refuse(&request, &failure);

@@ -64,6 +64,8 @@ static void names_with_control_characters(void **state) {
     wh_dialect_close(&dialect);
 }
 
+static const wh_frame_t frame_a = {.kind = WH_FRAME_GOOD, .body = (const uint8_t *)"A", .body_size = 1};
+
 static void a_name_that_fills_the_message(void **state) {
     (void)state;
     static char text[4000];
@@ -74,7 +76,7 @@ static void a_name_that_fills_the_message(void **state) {
     assert_true(open_text(text));
     wh_request_t request;
     wh_failure_t failure;
-    assert_int_equal(wh_dialect_decode(&dialect, &client, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
+    assert_int_equal(wh_dialect_decode(&dialect, &client, &frame_a, &request, &failure), WH_DECODED_MISTAKE);
     assert_message(": xxx");
     wh_dialect_forget(&dialect, &request);
     wh_dialect_close(&dialect);
@@ -92,7 +94,7 @@ static void limits_that_are_spent(void **state) {
     assert_message(":1: memory");
     wh_dialect_close(&dialect);
     assert_true(open_text("return {" FRAMING COMMANDS ENCODE "decode = function() while true do end end }"));
-    assert_int_equal(wh_dialect_decode(&dialect, &client, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
+    assert_int_equal(wh_dialect_decode(&dialect, &client, &frame_a, &request, &failure), WH_DECODED_MISTAKE);
     assert_message(": instruction budget");
     wh_dialect_forget(&dialect, &request);
     wh_dialect_close(&dialect);
