@@ -14,6 +14,7 @@
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
+#include "sim_board_told.h"
 
 #define USUAL_GAP_S 0.1
 #define USUAL_REST 1e-6
@@ -254,17 +255,6 @@ static json_t *sensor_to_json(const void *subject, size_t gripper) {
                        sensor->is_there ? json_boolean(sensor->logged) : json_null(), NULL);
 }
 
-static json_t *counts_to_json(const replay_t *replay) {
-    json_t *events = json_object();
-    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        if (replay->plant.found.events[kind] > 0) {
-            wh_json_put(events, wh_event_name((wh_event_kind_t)kind),
-                        whole(replay->plant.found.events[kind]));
-        }
-    }
-    return events;
-}
-
 static json_t *simulated_to_json(const replay_t *replay) {
     char name[WH_NAME_SIZE * 2];
     json_t *list = json_array();
@@ -294,7 +284,7 @@ static int print_json(const replay_t *replay, int status, const char *reason) {
                       wh_json_real(run->longest_s), whole(run->between), whole(found->refused),
                       whole(found->jumps), whole(found->complaints), whole(replay->field.ignored), NULL);
     (void)wh_json_add(root, "collision counts looks_simulated", json_boolean(replay->field.layout->collision),
-                      counts_to_json(replay), simulated_to_json(replay), NULL);
+                      wh_sim_board_counts(&replay->plant.found), simulated_to_json(replay), NULL);
     wh_json_put(root, "sensors",
                 wh_json_list(sensor_to_json, replay, replay->field.layout->machine.gripper_count));
     wh_json_put(root, "events", wh_json_list(event_to_json, replay, replay->heard_count));

@@ -3,7 +3,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "../text/json.h"
 #include "app.h"
 #include "connection.h"
 
@@ -146,12 +145,18 @@ static json_t *whole(uint64_t value) {
     return json_integer((json_int_t)value);
 }
 
-static json_t *events_of(const wh_plant_found_t *found) {
+json_t *wh_sim_board_counts(const wh_plant_found_t *found) {
     json_t *events = json_object();
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         if (found->events[kind] > 0) {
             wh_json_put(events, wh_event_name((wh_event_kind_t)kind), whole(found->events[kind]));
         }
+    }
+    if (found->jammed > 0) {
+        wh_json_put(events, "jammed", whole(found->jammed));
+    }
+    if (found->missed > 0) {
+        wh_json_put(events, "missed", whole(found->missed));
     }
     return events;
 }
@@ -190,7 +195,7 @@ static bool print_told(const wh_sim_board_told_t *told, const char *reason) {
                       told->lockstep ? json_null() : wh_json_real((double)pacing->latest_us / 1e6),
                       told->lockstep ? json_null() : wh_json_real((double)pacing->moved_us / 1e6), NULL);
     (void)wh_json_add(root, "complaints refused jumps events", whole(found->complaints),
-                      whole(found->refused), whole(found->jumps), events_of(found), NULL);
+                      whole(found->refused), whole(found->jumps), wh_sim_board_counts(found), NULL);
     return wh_app_is_printed(wh_json_print(root, stdout));
 }
 

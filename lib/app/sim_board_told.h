@@ -6,6 +6,10 @@
 #include "../loop/exchange.h"
 #include "../loop/pacing.h"
 #include "../loop/plant.h"
+#include "../text/json.h"
+
+/* An object of how often each kind of event was, and jams and misses of edge grips. */
+json_t *wh_sim_board_counts(const wh_plant_found_t *found);
 
 /* All pointers are borrowed. */
 typedef struct {

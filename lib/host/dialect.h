@@ -101,6 +101,7 @@ typedef enum {
     WH_HOST_DOOR,      /* a door has come to an end, or has left it */
     WH_HOST_MODE,      /* a robot's own controller has changed: its power, its mode, ... */
     WH_HOST_LOAD_PORT, /* a load port has reached a state, or begins a step; its carrier comes or goes */
+    WH_HOST_GRIP,      /* the plunger of an edge grip sets out, or stands */
     WH_HOST_EVENTS
 } wh_host_event_kind_t;
 extern const char *const wh_host_event_names[WH_HOST_EVENTS + 1];
@@ -198,9 +199,10 @@ typedef struct {
     char sequence[WH_DIALECT_NAME_BYTES]; /* empty: it has none */
 } wh_request_t;
 
-/* Calls decode(frame, client). It always makes a request, which must go to wh_dialect_forget. */
-wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const char *frame,
-                               size_t size, wh_request_t *request, wh_failure_t *failure);
+/* Calls decode(frame, client, ended_by) for a good frame. It always makes a request, which must go to
+ * wh_dialect_forget. */
+wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const wh_frame_t *frame,
+                               wh_request_t *request, wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
 /* Calls unit_of(frame): the address of the unit that the frame is for, or an empty text. False: a mistake,
@@ -235,7 +237,8 @@ typedef struct {
     const char *door;      /* null: none */
     const char *state;     /* of a robot's own controller, name=value pairs; null: none */
     const char *load_port; /* what it does, name=value pairs; null: none */
-    wh_client_t client;    /* to whom it is told */
+    const wh_grip_state_t *grip; /* what a plunger does; null: none */
+    wh_client_t client;          /* to whom it is told */
 } wh_host_event_t;
 
 /* Calls the command's run(request, now). `now` is asked for a result of WH_OK only if that function takes it.

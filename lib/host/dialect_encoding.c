@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "../layout/words.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "dialect_internal.h"
@@ -72,6 +73,10 @@ static void push_event(lua_State *L, const wh_host_event_t *event) {
     }
     if (event->at) {
         wh_lua_set_text(L, "at", event->at);
+    }
+    if (event->grip) {
+        wh_lua_set_text(L, "grip", wh_layout_phase_words[event->grip->phase]);
+        wh_lua_set_number(L, "excess", event->grip->excess);
     }
 }
 

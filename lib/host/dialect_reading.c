@@ -13,8 +13,8 @@
 #include "mechanism.h"
 #include "pace.h"
 
-const char *const wh_host_event_names[WH_HOST_EVENTS + 1] = {"wafer", "sensor", "valve", "hold", "position",
-                                                             "error", "door",   "mode",  "port", NULL};
+const char *const wh_host_event_names[WH_HOST_EVENTS + 1] = {
+    "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port", "grip", NULL};
 
 static const wh_reader_field_t dialect_fields[] = {
     {"name", "string", "what it is", true},

@@ -36,6 +36,14 @@ static void tell_wafer(wh_controller_t *controller, const wh_event_t *event, dou
     }
 }
 
+static void tell_owners(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, wh_host_event_t told) {
+    for (size_t i = 0; i < host->count; ++i) {
+        if ((host->controllers[i]->mechanism.grippers >> gripper & 1U) != 0) {
+            tell_event(host->controllers[i], kind, told);
+        }
+    }
+}
+
 /* A gripper's sensor or valve has changed. */
 static void tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, int value) {
     const wh_layout_t *layout = wh_session_layout(host->session);
@@ -44,11 +52,20 @@ static void tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripp
                                   .gripper = layout->grippers[gripper].name,
                                   .seconds = (double)wh_session_time_us(host->session) / 1e6,
                                   .value = value};
-    for (size_t i = 0; i < host->count; ++i) {
-        if ((host->controllers[i]->mechanism.grippers >> gripper & 1U) != 0) {
-            tell_event(host->controllers[i], kind, told);
-        }
-    }
+    tell_owners(host, kind, gripper, told);
+}
+
+/* A plunger sets out, or stands: it holds its wafer, jams or has missed it. */
+static void tell_grip(wh_host_t *host, size_t gripper, const wh_grip_state_t *grip) {
+    const wh_layout_t *layout = wh_session_layout(host->session);
+    const bool has_wafer = grip->wafer >= 0 && (size_t)grip->wafer < layout->wafer_count;
+    const wh_host_event_t told = {.kind = wh_host_event_names[WH_HOST_GRIP],
+                                  .wafer = has_wafer ? layout->wafers[grip->wafer].name : "",
+                                  .gripper = layout->grippers[gripper].name,
+                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
+                                  .value = -1,
+                                  .grip = grip};
+    tell_owners(host, WH_HOST_GRIP, gripper, told);
 }
 
 /* At the ports of the station that the door belongs to, of the whole cell, and of testers. */
@@ -213,6 +230,16 @@ static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_
     host->seen.sensors = state->sensors;
 }
 
+static void tell_grips(wh_host_t *host, const wh_command_t *command, const wh_state_t *state) {
+    for (size_t g = 0; state->physics && g < command->gripper_count; ++g) {
+        const wh_grip_state_t *grip = &state->physics->grips[g];
+        if (grip->phase != host->seen.grips[g]) {
+            host->seen.grips[g] = grip->phase;
+            tell_grip(host, g, grip);
+        }
+    }
+}
+
 static uint32_t find_doors(const wh_host_t *host, const char *word) {
     const wh_mcs_t *mcs = &host->session->mcs;
     uint32_t doors = 0;
@@ -244,6 +271,7 @@ void wh_host_look(wh_host_t *host) {
         host->seen.shut = find_doors(host, "shut");
         host->seen.sensors = wh_session_sensors(host->session);
         host->seen.valves = wh_session_valves(host->session);
+        wh_session_grips(host->session, host->seen.grips);
     }
     wh_host_tell_load_ports(host);
 }
@@ -251,6 +279,7 @@ void wh_host_look(wh_host_t *host) {
 void wh_host_tell_slice(wh_host_t *host, const wh_command_t *command, const wh_state_t *state) {
     tell_events(host, state);
     tell_changes(host, command, state);
+    tell_grips(host, command, state);
     tell_doors(host);
     wh_host_tell_load_ports(host);
     wh_host_tell_modes(host);

@@ -120,7 +120,7 @@ typedef struct {
 /* The client's last request with a sequence number, and its reply, for a client that sends it again. */
 typedef struct {
     uint8_t last[WH_FRAMING_LINE]; /* its body */
-    size_t last_size;
+    size_t last_size, last_end;
     wh_reply_t reply;
     bool remembers; /* the next reply is that */
 } wh_repeat_t;
@@ -196,6 +196,7 @@ typedef struct {
 typedef struct {
     uint32_t sensors, valves; /* of the last slice, by gripper: on, open */
     uint32_t open, shut;      /* by door: the switches */
+    wh_grip_phase_t grips[WH_GRIPPERS];
     wh_mcs_controller_t controllers[WH_LAYOUT_ROBOTS];
     wh_mcs_load_port_t *ports; /* of the layout's stations; null: not looked at yet */
     wh_event_kind_t complaint; /* the last one, where session->complaints says that there was one */

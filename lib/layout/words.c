@@ -8,6 +8,8 @@ const char *const wh_layout_vacuum_check_words[] = {"both", "get", "put", "none"
 const char *const wh_layout_beam_stuck_words[] = {"no", "dark", "lit", NULL};
 const char *const wh_layout_touch_stuck_words[] = {"no", "closed", "open", NULL};
 const char *const wh_layout_grip_words[] = {"vacuum", "edge", "passive", NULL};
+const char *const wh_layout_phase_words[] = {"open",   "closing", "closed", "jammed",
+                                             "missed", "opening", NULL};
 const char *const wh_layout_mount_words[] = {"chuck", "stage", "pins", "flipper", NULL};
 const char *const wh_layout_robot_words[] = {"TRZY", "TRZ", "SCARA", NULL};
 const char *const wh_layout_side_words[] = {"left", "right", NULL};

@@ -8,6 +8,7 @@ extern const char *const wh_layout_vacuum_check_words[]; /* wh_vacuum_check_t */
 extern const char *const wh_layout_beam_stuck_words[];   /* wh_beam_stuck_t of a beam */
 extern const char *const wh_layout_touch_stuck_words[];  /* wh_beam_stuck_t of a probe */
 extern const char *const wh_layout_grip_words[];         /* wh_grip_kind_t */
+extern const char *const wh_layout_phase_words[];        /* wh_grip_phase_t */
 extern const char *const wh_layout_mount_words[];        /* wh_mount_kind_t */
 extern const char *const wh_layout_robot_words[];        /* wh_chain_kind_t */
 extern const char *const wh_layout_side_words[];         /* of an elbow: left, right */

@@ -20,9 +20,9 @@
  *         }
  *     }
  *
- * C99 and C++11, from libc memcpy and memmove alone, no heap, no static data, nothing else of Waferhand: copy
- * board.h and board.c. One wh_board_t is for one line; nothing is shared. lib/manual/board.md describes each
- * byte. The simulator reads frames by the same code.
+ * C99 and C++11, from libc memcpy, memmove, memset and memcmp alone, no heap, no static data, nothing else of
+ * Waferhand: copy board.h and board.c. One wh_board_t is for one line; nothing is shared. lib/manual/board.md
+ * describes each byte. The simulator reads frames by the same code.
  */
 #ifndef WH_LOOP_BOARD_H
 #define WH_LOOP_BOARD_H

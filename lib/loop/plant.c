@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../layout/axes.h"
+#include "../layout/words.h"
 #include "../link/outcome.h"
 #include "../link/protocol_client.h"
 #include "../record/record.h"
@@ -174,6 +175,36 @@ static void tell_event(wh_plant_t *plant, const wh_event_t *event) {
     }
 }
 
+/* The plunger of an edge grip stands, and holds nothing. */
+static void tell_grip(wh_plant_t *plant, size_t gripper, const wh_grip_state_t *grip) {
+    const char *name = find_name(plant->layout, WH_NAME_GRIPPER, (int32_t)gripper);
+    const char *wafer = find_name(plant->layout, WH_NAME_WAFER, grip->wafer);
+    const bool jams = grip->phase == WH_GRIP_JAMMED;
+    char text[WH_EVENT_TEXT_SIZE];
+    plant->found.jammed += jams ? 1 : 0;
+    plant->found.missed += jams ? 0 : 1;
+    if (jams && grip->excess > 0) {
+        (void)snprintf(text, sizeof text, "jammed: %s, %s: %.3f mm beyond the clearance",
+                       wafer ? wafer : "no wafer", name, grip->excess);
+    } else {
+        (void)snprintf(text, sizeof text, "%s: %s, %s: the plunger stands at %.3f mm, and holds nothing",
+                       wh_layout_phase_words[grip->phase], wafer ? wafer : "no wafer", name, grip->s);
+    }
+    if (plant->heard) {
+        plant->heard(plant->heard_user, plant->command.utime, text, false);
+    }
+}
+
+static void tell_grips(wh_plant_t *plant, const wh_physics_state_t *physics) {
+    for (size_t g = 0; physics && g < plant->command.gripper_count; ++g) {
+        const wh_grip_phase_t phase = physics->grips[g].phase;
+        if (phase != plant->grips[g] && (phase == WH_GRIP_JAMMED || phase == WH_GRIP_MISSED)) {
+            tell_grip(plant, g, &physics->grips[g]);
+        }
+        plant->grips[g] = phase;
+    }
+}
+
 wh_status_t wh_plant_step(wh_plant_t *plant) {
     wh_command_t *command = &plant->command;
     waferhand_command message;
@@ -192,6 +223,7 @@ wh_status_t wh_plant_step(wh_plant_t *plant) {
     for (size_t i = 0; i < state.event_count; ++i) {
         tell_event(plant, &state.events[i]);
     }
+    tell_grips(plant, state.physics);
     return WH_OK;
 }
 

@@ -20,6 +20,7 @@ typedef struct {
     uint64_t complaints;       /* events by which the cell complains: record/record.h */
     wh_event_kind_t complaint; /* the last of them */
     uint64_t events[WH_EVENT_KINDS];
+    uint64_t jammed, missed; /* by edge grips; like an event, each is heard */
 } wh_plant_found_t;
 
 /* Must not be moved once opened. */
@@ -32,6 +33,7 @@ typedef struct {
     bool is_driven;           /* its numbers have come; before, the axes are at home and all valves closed */
     int64_t since;            /* slices since its numbers came */
     wh_plant_found_t found;
+    wh_grip_phase_t grips[WH_GRIPPERS]; /* of the last slice */
     /* Takes each event in words, without a line end; may be null. */
     void (*heard)(void *user, int64_t utime, const char *text, bool is_complaint);
     void *heard_user;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../layout/words.h"
 #include "../math/relation.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
@@ -73,8 +74,8 @@ static int read_sensor(lua_State *L) {
 }
 
 static const char *plunger_word(const wh_grip_state_t *state, const wh_edge_t *edge) {
-    static const char *const words[] = {"open", "closing", "closed", "jammed", "missed", "opening"};
-    return state->phase == WH_GRIP_CLOSING && state->s <= edge->retracted ? "still" : words[state->phase];
+    const bool is_still = state->phase == WH_GRIP_CLOSING && state->s <= edge->retracted;
+    return is_still ? "still" : wh_layout_phase_words[state->phase];
 }
 
 /* native.grip(gripper): the state of its edge grip's plunger, a word of lua/mcs/patterns.lua; its place, mm;

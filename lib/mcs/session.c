@@ -152,6 +152,13 @@ uint32_t wh_session_sensors(const wh_session_t *session) {
     return session->mcs.state.sensors;
 }
 
+void wh_session_grips(const wh_session_t *session, wh_grip_phase_t phases[WH_GRIPPERS]) {
+    const wh_physics_state_t *physics = session->mcs.state.physics;
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        phases[g] = physics ? physics->grips[g].phase : WH_GRIP_OPEN;
+    }
+}
+
 uint32_t wh_session_valves(const wh_session_t *session) {
     const wh_track_t *track = &session->mcs.track;
     uint32_t open = 0;

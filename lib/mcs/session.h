@@ -95,6 +95,9 @@ uint32_t wh_session_sensors(const wh_session_t *session);
 /* The valves that are open by the last command, or as the run begins: bit g of gripper g. */
 uint32_t wh_session_valves(const wh_session_t *session);
 
+/* The phases of edge grips in the slice that came back last, or as the run begins. */
+void wh_session_grips(const wh_session_t *session, wh_grip_phase_t phases[WH_GRIPPERS]);
+
 /* The grippers' commanded poses in the slice of which STATUS tells, base_from_gripper; without a cell
  * nothing is written. */
 void wh_session_poses(const wh_session_t *session, wh_pose_t poses[WH_GRIPPERS]);

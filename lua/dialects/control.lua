@@ -219,7 +219,7 @@ return {
   name = "JSON lines of a tester",
   framing = { ends = { "\n", "\r\n" }, longest = 4096 },
   second_client = "share",
-  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port", "grip" },
   decode = decode,
   commands = commands,
   gone = function(client) subscribed[client.number] = nil end,
@@ -240,7 +240,8 @@ return {
       return object("event", event.kind, "seconds", event.seconds, "wafer", event.wafer ~= "" and event.wafer or nil,
         "gripper", event.gripper ~= "" and event.gripper or nil, "value", event.value, "port", event.at, "door", event.door, "power", own.power, "brakes", own.brakes, "estop", own.estop,
         "servo", own.servo, "mode", own.mode, "exceeded", own.exceeded, "override", own.override,
-        "is", load_port.is, "does", load_port.does, "carrier", load_port.carrier, "failed", load_port.failed)
+        "is", load_port.is, "does", load_port.does, "carrier", load_port.carrier, "failed", load_port.failed,
+        "grip", event.grip, "excess", event.grip == "jammed" and event.excess or nil)
     end,
   },
   errors = errors,

@@ -215,7 +215,7 @@ end
 
 -- The kinds of events that a host may ask for, and what is told of those that befall no wafer, in one field.
 local KINDS = { WAFER = "wafer", SENSOR = "sensor", VALVE = "valve", HOLD = "hold", POSITION = "position", ERROR = "error", DOOR = "door", MODE = "mode",
-  PORT = "port" }
+  PORT = "port", GRIP = "grip" }
 
 local function with_values(name, values, order)
   local list = { name }
@@ -239,11 +239,22 @@ local OF_KIND = {
   door = function(event) return event.door .. ";" .. (event.value or "-") end,
   mode = function(event) return with_values(event.at, event.controller, { "power", "brakes", "estop", "servo", "mode", "exceeded" }) end,
   port = function(event) return with_values(event.at, event.load_port, { "is", "does", "carrier", "failed" }) end,
+  grip = function(event) return event.gripper .. ";" .. event.grip end,
 }
 
 -- Keeps the result for RFND.
 local function keep(request, result)
   found[request.command] = told(request, result)
+end
+
+-- Our name of a load port that this controller may tell of: a load port's own controller knows no other.
+local function own_port(theirs, status)
+  local name = host.station(theirs)
+  local own = host.mechanism(name)
+  if not status[name .. ".is"] or own ~= name and status[own .. ".is"] then
+    host.refuse("NO_SUCH_STATION", name)
+  end
+  return name
 end
 
 return {
@@ -254,7 +265,7 @@ return {
   },
   units = { length = 0.001, angle = 0.001 },
   unit_of = function(frame) return split(frame:sub(2))[1] end,
-  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port", "grip" },
   gone = function() subscribed = { wafer = true } end,
   decode = decode,
 
@@ -364,7 +375,7 @@ return {
       return maps[request.arguments[1] or ""]
     end },
     RPRT = { does = "STATUS", answer = function(request, result)
-      local name, list = host.station(request.arguments[1] or ""), {}
+      local name, list = own_port(request.arguments[1] or "", result.status), {}
       for place, part in ipairs({ "carrier", "does", "is", "left" }) do
         list[place] = field(result.status[name .. "." .. part] or "")
       end

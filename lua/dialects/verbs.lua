@@ -191,16 +191,27 @@ local OF_KIND = {
   door = function(event) return event.door .. ";" .. (event.value or "-") end,
   mode = function(event) return with_values(event.at, event.controller, { "power", "brakes", "estop", "servo", "mode", "exceeded" }) end,
   port = function(event) return with_values(event.at, event.load_port, { "is", "does", "carrier", "failed" }) end,
+  grip = function(event) return event.gripper .. ";" .. event.grip end,
 }
 
 local function position(_, result)
   return axes_as_fields(result.position)
 end
 
+-- Our name of a load port that this controller may tell of: a load port's own controller knows no other.
+local function own_port(theirs, status)
+  local name = host.station(theirs)
+  local own = host.mechanism(name)
+  if not status[name .. ".is"] or own ~= name and status[own .. ".is"] then
+    host.refuse("NO_SUCH_STATION", name)
+  end
+  return name
+end
+
 return {
   name = "frames as object.verb(arguments)",
   framing = { ends = { "\r", "\r\n" }, longest = 512, timeout = 5 },
-  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port" },
+  events = { "wafer", "sensor", "valve", "hold", "position", "error", "door", "mode", "port", "grip" },
   gone = function() subscribed = { wafer = true } end,
   decode = decode,
 
@@ -313,7 +324,7 @@ return {
       return tostring(result.values.codes or host.refuse("NOT_MAPPED", request.arguments[1]))
     end },
     GPRT = { does = "STATUS", answer = function(request, result)
-      local name, list = host.station(request.arguments[1] or ""), {}
+      local name, list = own_port(request.arguments[1] or "", result.status), {}
       for place, part in ipairs({ "carrier", "does", "is", "left" }) do
         list[place] = field(tostring(result.status[name .. "." .. part] or ""))
       end

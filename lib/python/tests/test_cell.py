@@ -103,7 +103,7 @@ def test_where_a_name_needs_quotes(cell):
 
 @pytest.mark.cell(PAPER)
 def test_kinds_of_events_that_are_none(cell):
-    with pytest.raises(CellError, match=r"subscribe: pickd \(expected some of picked, .*, mode, port; did you mean picked\?"):
+    with pytest.raises(CellError, match=r"subscribe: pickd \(expected some of picked, .*, mode, port, grip; did you mean picked\?"):
         cell.events("picked", "pickd")
     with pytest.raises(CellError, match="subscribe: wafer "):
         cell.events("wafer")

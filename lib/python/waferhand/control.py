@@ -32,7 +32,7 @@ class Event:
     value: Optional[int] = None
     port: Optional[str] = None
     door: Optional[str] = None
-    state: dict[str, Value] = field(default_factory=dict, hash=False)  # of "mode" and "port": all else that is told, by name
+    state: dict[str, Value] = field(default_factory=dict, hash=False)  # of "mode", "port" and "grip": all else that is told, by name
 
 
 FIELDS = ("seconds", "wafer", "gripper", "value", "port", "door")
