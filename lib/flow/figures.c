@@ -27,8 +27,8 @@ typedef struct {
 typedef struct {
     int64_t since_us;
     aside_t aside;
-    int64_t *blamed; /* where the end of the last stay was counted */
-    bool is_over;    /* the wafer in it is at its end */
+    double *blamed; /* where the end of the last stay was counted */
+    bool is_over;   /* the wafer in it is at its end */
 } place_t;
 
 struct wh_flow_measure {
@@ -46,7 +46,7 @@ typedef wh_flow_measure_t measure_t;
 /* ----------------------------------------------------------------------------------------------- stations */
 
 static void add(measure_t *measure, int32_t station, wh_flow_station_class_t which, int64_t us) {
-    measure->figures->stations[station][which] += us;
+    measure->figures->stations[station][which] += (double)us;
 }
 
 /* Goes on to `to_us` in one class. Cleans, pumps and failures within count as themselves if `which` is one
@@ -102,17 +102,17 @@ static void blame(measure_t *measure, const wh_flow_state_t *state, const wh_flo
         int64_t empty_us = place->wafer == WH_FLOW_NONE ? place->empty_us : stay->end_us;
         empty_us = empty_us > stay->end_us ? stay->end_us : empty_us;
         if (empty_us > from_us) {
-            int64_t *by_station =
+            double *by_station =
                 &measure->figures->blocked_by_station[(size_t)stay->station * stations +
                                                       (size_t)state->tool->place_stations[to]];
-            *by_station += empty_us - from_us;
+            *by_station += (double)(empty_us - from_us);
             measure->places[stay->place].blamed = by_station;
             from_us = empty_us;
         }
     }
-    int64_t *by_robot =
+    double *by_robot =
         &measure->figures->blocked_by_robot[(size_t)stay->station * robots + (size_t)stay->robot];
-    *by_robot += stay->end_us - from_us;
+    *by_robot += (double)(stay->end_us - from_us);
     if (from_us < stay->end_us) {
         measure->places[stay->place].blamed = by_robot;
     }
@@ -219,7 +219,7 @@ static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) 
     measure_t *measure = context;
     const int64_t us = to_us - state->now_us;
     for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        measure->figures->robots[r][wh_flow_robot_class(state, (int32_t)r)] += us;
+        measure->figures->robots[r][wh_flow_robot_class(state, (int32_t)r)] += (double)us;
     }
     for (size_t s = 0; s < state->tool->station_count; ++s) {
         const wh_flow_station_state_t *station = &state->stations[s];
@@ -245,7 +245,7 @@ static void take_back(measure_t *measure, const wh_flow_state_t *state, int32_t 
     }
     if (state->wafers[wafer].step > 0) {
         add(measure, station, WH_FLOW_STATION_BLOCKED, -ahead_us);
-        *place->blamed -= ahead_us;
+        *place->blamed -= (double)ahead_us;
     } else {
         add(measure, station, WH_FLOW_STATION_STORED, -ahead_us);
     }

@@ -82,11 +82,12 @@ typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
     wh_flow_result_t result;
-    int64_t (*robots)[WH_FLOW_ROBOT_CLASSES];     /* us, by robot */
-    int64_t (*stations)[WH_FLOW_STATION_CLASSES]; /* us of all its places */
-    int64_t *blocked_by_robot;                    /* of WH_FLOW_STATION_BLOCKED, by station and robot */
-    int64_t *blocked_by_station;                  /* by station and station */
-    size_t *placed;                               /* wafers placed, by station */
+    /* Sums in us, whole numbers up to 2^53: many places times many years would be too much for integers. */
+    double (*robots)[WH_FLOW_ROBOT_CLASSES];     /* by robot */
+    double (*stations)[WH_FLOW_STATION_CLASSES]; /* of all its places */
+    double *blocked_by_robot;                    /* of WH_FLOW_STATION_BLOCKED, by station and robot */
+    double *blocked_by_station;                  /* by station and station */
+    size_t *placed;                              /* wafers placed, by station */
     wh_flow_stays_t stays;
     wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;

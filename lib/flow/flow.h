@@ -42,7 +42,7 @@ void wh_flow_result_close(wh_flow_result_t *result);
  * is the same to 1 us over the middle third; with real robots to 1 %, and the mean is taken. Returns null,
  * with k in `period` and that difference in `cycle_us`; or why there is none, by malloc, with 0 and
  * WH_FLOW_NEVER there: too few wafers, and how many would do; ends that do not repeat; ends that repeat
- * within a burst alone, faster than a station works. */
+ * within a burst alone, faster than a station works; ends at one instant. */
 char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const int64_t *ends_us,
                          size_t count, int32_t *period, int64_t *cycle_us);
 

@@ -239,7 +239,7 @@ static int32_t least_period(const int64_t ends_us[], size_t first, size_t k, int
         }
         if (repeats) {
             *cycle_us = way_us;
-            return (int32_t)least;
+            return way_us > 0 ? (int32_t)least : 0;
         }
     }
     return 0;

@@ -181,6 +181,11 @@ char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
     if (*period == 0) {
         return tell_no_period(tool, plan, &ends);
     }
+    if (*cycle_us <= 0) {
+        *period = 0;
+        *cycle_us = WH_FLOW_NEVER;
+        return wh_text_copy("the wafers of the middle third end at one instant: no rate can be told");
+    }
     const double wafer_us = (double)*cycle_us / *period;
     const int32_t station = find_outrun(tool, plan, wafer_us, &least_us);
     if (station == WH_FLOW_NONE) {

@@ -58,7 +58,9 @@ static const char *look_at_plan(const wh_flow_tool_t *tool, const wh_flow_plan_t
         return "there are several routes";
     }
     if (plan->down_count > 0 || plan->takt_us > 0) {
-        return plan->takt_us > 0 ? "there is a takt" : "a station fails";
+        return plan->takt_us > 0                      ? "there is a takt"
+               : plan->downs[0].robot == WH_FLOW_NONE ? "a station fails"
+                                                      : "a robot is held";
     }
     return look_at_lots(plan);
 }
@@ -369,6 +371,9 @@ wh_flow_textbook_t wh_flow_textbook(const wh_flow_tool_t *tool, const wh_flow_pl
     if (!found.why) {
         compare_times(&line, &plan->routes[0]);
         found.why = find_form(&line, plan, &found);
+    }
+    if (!found.why && found.cycle_us <= 0) {
+        found.why = "all times are 0";
     }
     if (found.why) {
         found.cycle_us = -1;

@@ -15,7 +15,7 @@ static int by_length(const void *a, const void *b) {
     if ((one->cause == NULL) != (other->cause == NULL)) {
         return one->cause ? -1 : 1;
     }
-    if (one->us != other->us) {
+    if (one->us > other->us || one->us < other->us) {
         return one->us > other->us ? -1 : 1;
     }
     if (one->cause) {
@@ -66,17 +66,17 @@ wh_flow_busy_t wh_flow_busiest(const wh_flow_figures_t *figures) {
     const double end_us = (double)figures->end_us;
     wh_flow_busy_t busiest = {WH_FLOW_NONE, WH_FLOW_NONE, 0};
     for (int32_t r = 0; r < (int32_t)tool->robot_count && end_us > 0; ++r) {
-        int64_t idle_us = figures->robots[r][WH_FLOW_ROBOT_IDLE];
+        double idle_us = figures->robots[r][WH_FLOW_ROBOT_IDLE];
         for (int i = FIRST_WAIT; i <= LAST_WAIT; ++i) {
             idle_us += figures->robots[r][i];
         }
-        take(&busiest, r, WH_FLOW_NONE, 1 - (double)idle_us / end_us);
+        take(&busiest, r, WH_FLOW_NONE, 1 - idle_us / end_us);
     }
     for (int32_t s = 0; s < (int32_t)tool->station_count && end_us > 0; ++s) {
-        const int64_t *us = figures->stations[s];
-        const int64_t busy_us = us[WH_FLOW_STATION_PROCESS] + us[WH_FLOW_STATION_HANDLED] +
-                                us[WH_FLOW_STATION_CLEAN] + us[WH_FLOW_STATION_PUMP];
-        take(&busiest, WH_FLOW_NONE, s, (double)busy_us / end_us / tool->stations[s].slots);
+        const double *us = figures->stations[s];
+        const double busy_us = us[WH_FLOW_STATION_PROCESS] + us[WH_FLOW_STATION_HANDLED] +
+                               us[WH_FLOW_STATION_CLEAN] + us[WH_FLOW_STATION_PUMP];
+        take(&busiest, WH_FLOW_NONE, s, busy_us / end_us / tool->stations[s].slots);
     }
     return busiest;
 }

@@ -9,7 +9,7 @@
 typedef struct {
     const char *cause; /* of robots, such as "wafer"; null for wafers */
     int32_t robot, station;
-    int64_t us;
+    double us;
 } wh_flow_wait_t;
 
 /* Robots' waits, then wafers', each the longest first; those of no time are left out. The caller frees

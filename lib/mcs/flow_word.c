@@ -52,7 +52,8 @@ static void push_waits(lua_State *L, const wh_flow_figures_t *figures) {
                         wait->cause                   ? wait->cause
                         : wait->robot != WH_FLOW_NONE ? figures->tool->robots[wait->robot].name
                                                       : figures->tool->stations[wait->station].name);
-        set_seconds(L, "seconds", wait->us);
+        lua_pushnumber(L, wait->us / 1e6);
+        lua_setfield(L, -2, "seconds");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     free(waits);
@@ -71,11 +72,11 @@ static void push_limits(lua_State *L, const wh_flow_figures_t *figures) {
 }
 
 /* By name, the share of the time in each class. */
-static void push_shares(lua_State *L, const int64_t times_us[], const char *const names[], size_t count,
-                        int64_t all_us) {
+static void push_shares(lua_State *L, const double times_us[], const char *const names[], size_t count,
+                        double all_us) {
     lua_createtable(L, 0, (int)count);
     for (size_t i = 0; i < count; ++i) {
-        lua_pushnumber(L, all_us > 0 ? (double)times_us[i] / (double)all_us : 0);
+        lua_pushnumber(L, all_us > 0 ? times_us[i] / all_us : 0);
         lua_setfield(L, -2, names[i]);
     }
 }
@@ -84,14 +85,15 @@ static void push_all_shares(lua_State *L, const wh_flow_figures_t *figures) {
     const wh_flow_tool_t *tool = figures->tool;
     lua_newtable(L);
     for (size_t r = 0; r < tool->robot_count; ++r) {
-        push_shares(L, figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, figures->end_us);
+        push_shares(L, figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES,
+                    (double)figures->end_us);
         lua_setfield(L, -2, tool->robots[r].name);
     }
     lua_setfield(L, -2, "robots");
     lua_newtable(L);
     for (size_t s = 0; s < tool->station_count; ++s) {
         push_shares(L, figures->stations[s], wh_flow_station_class_names, WH_FLOW_STATION_CLASSES,
-                    figures->end_us * tool->stations[s].slots);
+                    (double)figures->end_us * tool->stations[s].slots);
         lua_setfield(L, -2, tool->stations[s].name);
     }
     lua_setfield(L, -2, "stations");

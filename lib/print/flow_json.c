@@ -24,10 +24,10 @@ static json_t *seconds(int64_t us) {
     return us == WH_FLOW_NEVER ? json_null() : wh_json_real((double)us / 1e6);
 }
 
-static json_t *shares(const int64_t times_us[], const char *const names[], size_t count, double all_us) {
+static json_t *shares(const double times_us[], const char *const names[], size_t count, double all_us) {
     json_t *object = json_object();
     for (size_t i = 0; i < count; ++i) {
-        wh_json_put(object, names[i], wh_json_real(all_us > 0 ? (double)times_us[i] / all_us : 0));
+        wh_json_put(object, names[i], wh_json_real(all_us > 0 ? times_us[i] / all_us : 0));
     }
     return object;
 }
@@ -47,15 +47,15 @@ static json_t *blocked_by(const wh_flow_figures_t *figures, size_t s) {
     const wh_flow_tool_t *tool = figures->tool;
     json_t *object = json_object();
     for (size_t r = 0; r < tool->robot_count; ++r) {
-        const int64_t us = figures->blocked_by_robot[s * tool->robot_count + r];
+        const double us = figures->blocked_by_robot[s * tool->robot_count + r];
         if (us > 0) {
-            wh_json_put(object, tool->robots[r].name, seconds(us));
+            wh_json_put(object, tool->robots[r].name, wh_json_real(us / 1e6));
         }
     }
     for (size_t other = 0; other < tool->station_count; ++other) {
-        const int64_t us = figures->blocked_by_station[s * tool->station_count + other];
+        const double us = figures->blocked_by_station[s * tool->station_count + other];
         if (us > 0) {
-            wh_json_put(object, tool->stations[other].name, seconds(us));
+            wh_json_put(object, tool->stations[other].name, wh_json_real(us / 1e6));
         }
     }
     return object;
@@ -200,8 +200,7 @@ static json_t *waits(const wh_flow_figures_t *figures) {
         const wh_flow_wait_t *of = &all[i];
         const char *cause = of->cause ? of->cause : name_of(figures->tool, of->robot, of->station);
         (void)json_array_append_new(list, wh_json_set(json_object(), "who %s cause %s seconds %g",
-                                                      of->cause ? "robots" : "wafers", cause,
-                                                      (double)of->us / 1e6));
+                                                      of->cause ? "robots" : "wafers", cause, of->us / 1e6));
     }
     free(all);
     return list;

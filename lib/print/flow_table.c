@@ -72,7 +72,7 @@ static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *fig
 }
 
 /* The classes that have any time, as columns in percent. */
-static size_t name_columns(wh_grid_t *grid, const int64_t sums[], const char *const names[], size_t count,
+static size_t name_columns(wh_grid_t *grid, const double sums[], const char *const names[], size_t count,
                            size_t columns[]) {
     size_t used = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ static size_t name_columns(wh_grid_t *grid, const int64_t sums[], const char *co
 
 static void print_robots(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     const wh_flow_tool_t *tool = figures->tool;
-    int64_t sums[WH_FLOW_ROBOT_CLASSES] = {0};
+    double sums[WH_FLOW_ROBOT_CLASSES] = {0};
     size_t columns[WH_FLOW_ROBOT_CLASSES];
     for (size_t r = 0; r < tool->robot_count; ++r) {
         for (size_t i = 0; i < WH_FLOW_ROBOT_CLASSES; ++i) {
@@ -102,7 +102,7 @@ static void print_robots(const wh_printer_t *printer, const wh_flow_figures_t *f
         wh_grid_named_row(grid, tool->robots[r].name);
         for (size_t i = 0; i < used; ++i) {
             wh_grid_number(grid, 1 + i, WH_INK_PLAIN,
-                           100 * (double)figures->robots[r][columns[i]] / (double)figures->end_us);
+                           100 * figures->robots[r][columns[i]] / (double)figures->end_us);
         }
     }
     wh_print_titled(printer, "Robots", grid);
@@ -112,16 +112,16 @@ static void print_robots(const wh_printer_t *printer, const wh_flow_figures_t *f
 static const char *blocker_of(const wh_flow_figures_t *figures, size_t station) {
     const wh_flow_tool_t *tool = figures->tool;
     const char *name = NULL;
-    int64_t most = 0;
+    double most = 0;
     for (size_t r = 0; r < tool->robot_count; ++r) {
-        const int64_t us = figures->blocked_by_robot[station * tool->robot_count + r];
+        const double us = figures->blocked_by_robot[station * tool->robot_count + r];
         if (us > most) {
             most = us;
             name = tool->robots[r].name;
         }
     }
     for (size_t s = 0; s < tool->station_count; ++s) {
-        const int64_t us = figures->blocked_by_station[station * tool->station_count + s];
+        const double us = figures->blocked_by_station[station * tool->station_count + s];
         if (us > most) {
             most = us;
             name = tool->stations[s].name;
@@ -132,7 +132,7 @@ static const char *blocker_of(const wh_flow_figures_t *figures, size_t station) 
 
 static void print_stations(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     const wh_flow_tool_t *tool = figures->tool;
-    int64_t sums[WH_FLOW_STATION_CLASSES] = {0};
+    double sums[WH_FLOW_STATION_CLASSES] = {0};
     size_t columns[WH_FLOW_STATION_CLASSES];
     for (size_t s = 0; s < tool->station_count; ++s) {
         for (size_t i = 0; i < WH_FLOW_STATION_CLASSES; ++i) {
@@ -148,7 +148,7 @@ static void print_stations(const wh_printer_t *printer, const wh_flow_figures_t 
         wh_grid_named_row(grid, tool->stations[s].name);
         wh_grid_number(grid, 1, WH_INK_PLAIN, (double)figures->placed[s]);
         for (size_t i = 0; i < used; ++i) {
-            wh_grid_number(grid, 2 + i, WH_INK_PLAIN, 100 * (double)figures->stations[s][columns[i]] / all);
+            wh_grid_number(grid, 2 + i, WH_INK_PLAIN, 100 * figures->stations[s][columns[i]] / all);
         }
         const char *blocker = blocker_of(figures, s);
         if (blocker) {
@@ -227,7 +227,7 @@ static void print_waits(const wh_printer_t *printer, const wh_flow_figures_t *fi
         const char *cause = wait->cause ? wait->cause : name_of(figures->tool, wait->robot, wait->station);
         wh_grid_named_row(grid, wait->cause ? "robots" : "done wafers");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s", wait->cause ? "a " : "", cause);
-        wh_grid_number(grid, 2, WH_INK_PLAIN, seconds(wait->us));
+        wh_grid_number(grid, 2, WH_INK_PLAIN, wait->us / 1e6);
     }
     wh_print_titled(printer, "Waits by cause", grid);
     free(waits);

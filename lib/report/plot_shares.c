@@ -28,10 +28,10 @@ static const kind_t kinds[] = {
 
 #define KINDS (sizeof kinds / sizeof kinds[0])
 
-static double sum(const int64_t us[], const int classes[], size_t count, double all_us) {
+static double sum(const double us[], const int classes[], size_t count, double all_us) {
     double percent = 0;
     for (size_t i = 0; i < count && classes[i] >= 0; ++i) {
-        percent += 100 * (double)us[classes[i]] / all_us;
+        percent += 100 * us[classes[i]] / all_us;
     }
     return percent;
 }

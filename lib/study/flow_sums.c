@@ -23,14 +23,14 @@ static double cycle_of(const wh_flow_result_t *result) {
 static void read_waits(const wh_flow_figures_t *of, double figures[WH_FLOW_SUM_FIGURES]) {
     size_t count = 0;
     wh_flow_wait_t *waits = wh_flow_waits(of, &count);
-    int64_t robots_us = 0, wafers_us = 0;
+    double robots_us = 0, wafers_us = 0;
     for (size_t i = 0; i < count; ++i) {
-        int64_t *const us = waits[i].cause ? &robots_us : &wafers_us;
+        double *const us = waits[i].cause ? &robots_us : &wafers_us;
         *us += waits[i].us;
     }
     free(waits);
-    figures[WH_FLOW_SUM_ROBOTS_WAIT] = (double)robots_us / 1e6;
-    figures[WH_FLOW_SUM_WAFERS_WAIT] = (double)wafers_us / 1e6;
+    figures[WH_FLOW_SUM_ROBOTS_WAIT] = robots_us / 1e6;
+    figures[WH_FLOW_SUM_WAFERS_WAIT] = wafers_us / 1e6;
 }
 
 bool wh_flow_sums_read(const wh_flow_t *flow, double figures[WH_FLOW_SUM_FIGURES]) {

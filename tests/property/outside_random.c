@@ -430,10 +430,10 @@ static void time_of_robots_that_are_held_is_told(void **unused) {
         for (size_t r = 0; r < tool.robot_count; ++r) {
             int64_t all_us = 0;
             for (size_t i = 0; i < WH_FLOW_ROBOT_CLASSES; ++i) {
-                all_us += figures.robots[r][i];
+                all_us += (int64_t)figures.robots[r][i];
             }
             assert_int_equal(all_us, figures.end_us);
-            assert_int_equal(figures.robots[r][WH_FLOW_ROBOT_WAITS_DOWN], holds[r].waited_us);
+            assert_int_equal((int64_t)figures.robots[r][WH_FLOW_ROBOT_WAITS_DOWN], holds[r].waited_us);
             waited_us += holds[r].waited_us;
         }
         wh_flow_figures_close(&figures);

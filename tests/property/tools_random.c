@@ -315,7 +315,7 @@ static void check_figures(tool_log_t *log, const flow_case_t *flow, const wh_flo
     for (size_t r = 0; r < flow->tool.robot_count; ++r) {
         int64_t sum_us = 0;
         for (size_t i = 0; i < WH_FLOW_ROBOT_CLASSES; ++i) {
-            sum_us += figures.robots[r][i];
+            sum_us += (int64_t)figures.robots[r][i];
         }
         log_holds(log, sum_us == figures.end_us, "the classes of %s add up to another time",
                   flow->tool.robots[r].name);
@@ -323,7 +323,7 @@ static void check_figures(tool_log_t *log, const flow_case_t *flow, const wh_flo
     for (size_t s = 0; s < flow->tool.station_count; ++s) {
         int64_t sum_us = 0;
         for (size_t i = 0; i < WH_FLOW_STATION_CLASSES; ++i) {
-            sum_us += figures.stations[s][i];
+            sum_us += (int64_t)figures.stations[s][i];
         }
         log_holds(log, sum_us == figures.end_us * flow->tool.stations[s].slots,
                   "the classes of %s add up to another time", flow->tool.stations[s].name);
