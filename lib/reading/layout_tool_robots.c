@@ -6,6 +6,16 @@
 #include "layout_internal.h"
 #include "layout_tool.h"
 
+/* The number of a station that the robot serves; a time for another one would never be used. */
+static int32_t find_served(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot, const char *field,
+                           const char *name) {
+    const int32_t station = wh_timed_find_station(reader, tool, field, name);
+    if (!tool->serves[wh_flow_of(tool, robot, station)]) {
+        wh_reader_refuse(reader, field, name, "a station that %s serves", tool->robots[robot].name);
+    }
+    return station;
+}
+
 /* The times of the stations that the reader's table names. It must name all that the robot serves if there is
  * no usual time. */
 static void read_own_times(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot, bool has_usual,
@@ -20,7 +30,7 @@ static void read_own_times(wh_reader_t *reader, const wh_flow_tool_t *tool, int3
     const wh_timed_name_t *names = wh_timed_read_names(reader, "stations", &count);
     for (size_t i = 0; i < count; ++i) {
         if (strcmp(names[i].name, "default") != 0) {
-            (void)wh_timed_find_station(reader, tool, names[i].name, names[i].name);
+            (void)find_served(reader, tool, robot, names[i].name, names[i].name);
         }
     }
 }
@@ -45,14 +55,22 @@ static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot,
     }
 }
 
+/* One end of a pair: a station that the robot serves, or in front of which it begins. */
+static size_t find_end(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot, const char *pair,
+                       const char *name) {
+    const int32_t begins = tool->robots[robot].at;
+    return (size_t)(strcmp(name, tool->stations[begins].name) == 0
+                        ? begins
+                        : find_served(reader, tool, robot, pair, name));
+}
+
 /* One pair of `move`, named "A>B"; and the way back, unless that is named as well. */
 static void read_pair(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *pair) {
     char from[WH_NAME_SIZE], to[WH_NAME_SIZE], back[2 * WH_NAME_SIZE];
     if (sscanf(pair, "%63[^>]>%63[^\n]", from, to) != 2) {
         wh_reader_refuse(reader, NULL, pair, "a pair of stations, as in [\"A>B\"]");
     }
-    const size_t a = (size_t)wh_timed_find_station(reader, tool, pair, from),
-                 b = (size_t)wh_timed_find_station(reader, tool, pair, to);
+    const size_t a = find_end(reader, tool, robot, pair, from), b = find_end(reader, tool, robot, pair, to);
     if (a == b) {
         wh_reader_refuse(reader, NULL, pair, "two stations: within one a robot has no way");
     }
