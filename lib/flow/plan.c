@@ -160,7 +160,7 @@ static bool meets_recipes(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool
 
 static char *check_recipe(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     const int32_t recipe = plan->wafers[w].recipe;
-    return recipe == 0 || meets_recipes(plan, tool, w)
+    return recipe == 0 || plan->is_given || meets_recipes(plan, tool, w)
                ? NULL
                : problem_of("%s has the recipe %s, but no station of route %s has times by recipe (expected "
                             "one, or no recipe)",

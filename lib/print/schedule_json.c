@@ -40,6 +40,10 @@ static json_t *rule_of(const void *subject, size_t i) {
                        wh_schedule_rules[i + 1], verdict->is_looked, verdict->but, (long long)verdict->found);
 }
 
+static json_t *unused_of(const void *subject, size_t i) {
+    return wh_json_text(((const wh_schedule_names_t *)subject)->texts[i]);
+}
+
 static json_t *apart_of(const wh_schedule_t *schedule, size_t row, int64_t played_us) {
     return row == SIZE_MAX ? json_null()
                            : wh_json_set(row_of(schedule, row), "played_s %g", seconds(played_us));
@@ -76,7 +80,8 @@ int wh_schedule_print_json(const wh_schedule_report_t *report, const wh_schedule
                     (long long)schedule->count, (long long)schedule->wafers.count, seconds(report->end_us));
     (void)wh_json_set(root, "assumed_starts %lld last_line_ends %i times_look_like %s",
                       (long long)report->assumed, schedule->ends_whole, wh_schedule_unit(report->scale));
-    (void)wh_json_add(root, "first rules findings play",
+    (void)wh_json_add(root, "unused_columns first rules findings play",
+                      wh_json_list(unused_of, &schedule->unused, schedule->unused.count),
                       first ? finding_of(report, (size_t)(first - report->findings)) : json_null(),
                       wh_json_list(rule_of, report, WH_SCHEDULE_RULES - 1),
                       wh_json_list(finding_of, report, report->count), play_of(schedule, play), NULL);

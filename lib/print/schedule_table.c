@@ -122,6 +122,19 @@ static void put_notes(FILE *out, const wh_style_t *style, const wh_schedule_repo
     }
 }
 
+static void put_unused(FILE *out, const wh_schedule_names_t *unused) {
+    for (size_t i = 0; i < unused->count; ++i) {
+        fputs(i > 0                ? ", "
+              : unused->count == 1 ? "! nothing uses this column: "
+                                   : "! nothing uses these columns: ",
+              out);
+        wh_style_put(out, unused->texts[i]);
+    }
+    if (unused->count > 0) {
+        fputc('\n', out);
+    }
+}
+
 static void put_verdict(FILE *out, const wh_style_t *style, const wh_schedule_report_t *report) {
     const size_t found = report->count - report->warnings, wafers = report->schedule->wafers.count;
     fputc('\n', out);
@@ -199,6 +212,7 @@ int wh_schedule_print_table(const wh_schedule_report_t *report, const wh_schedul
     }
     put_findings(out, report);
     put_notes(out, style, report);
+    put_unused(out, &report->schedule->unused);
     put_verdict(out, style, report);
     if (play && play->is_played) {
         put_play(out, style, report, play);

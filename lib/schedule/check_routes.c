@@ -96,19 +96,36 @@ static bool is_on_its_way(const wh_schedule_state_t *check, const wh_check_wafer
     return station->process_us > 0 || station->is_lock;
 }
 
+/* True for a load lock of which the layout has one side alone: nobody could carry a wafer on from there. */
+static bool is_outlet(const wh_schedule_state_t *check, int32_t place) {
+    const wh_flow_tool_t *tool = check->tool;
+    const wh_flow_station_t *lock = wh_check_station(check, check->schedule->places[place].station);
+    bool has[2] = {false, false};
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        const size_t of = wh_flow_of(tool, (int32_t)r, (int32_t)(lock - tool->stations));
+        has[0] = has[0] || (tool->serves[of] && tool->sides[of] != WH_FLOW_VACUUM);
+        has[1] = has[1] || (tool->serves[of] && tool->sides[of] != WH_FLOW_ATMOSPHERE);
+    }
+    return lock->is_lock && has[0] != has[1];
+}
+
+/* The place where a wafer that lies should lie at last, by the layout; null: it is there, or nobody knows. */
+static const char *find_last_place(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer) {
+    if (check->tool->route_count > 0) {
+        return !wafer->is_lost && wafer->routes != 0 && !is_at_end(check, wafer) ? "at its route's end"
+                                                                                 : NULL;
+    }
+    return is_on_its_way(check, wafer) && !is_outlet(check, wafer->place)
+               ? "in a station that neither processes nor pumps"
+               : NULL;
+}
+
 /* "a place", as is expected of a wafer at last; null: it is there, or nobody knows. */
 static const char *find_last(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer) {
-    const bool has_routes = check->tool && check->tool->route_count > 0;
     if (wafer->where == WH_CHECK_ABOARD) {
         return "a place";
     }
-    if (!check->tool || wafer->where != WH_CHECK_LIES) {
-        return NULL;
-    }
-    if (!has_routes) {
-        return is_on_its_way(check, wafer) ? "in a station that neither processes nor pumps" : NULL;
-    }
-    return !wafer->is_lost && wafer->routes != 0 && !is_at_end(check, wafer) ? "at its route's end" : NULL;
+    return check->tool && wafer->where == WH_CHECK_LIES ? find_last_place(check, wafer) : NULL;
 }
 
 /* Rule 17. */

@@ -18,21 +18,32 @@ int32_t wh_check_recipe(const wh_schedule_state_t *check, const wh_schedule_row_
                                       wh_schedule_text(&check->schedule->recipes, row->recipe - 1));
 }
 
-/* The time for which the layout processes a wafer where it lies: of the shortest route that it may go. */
-int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
+/* True if one process comes before another one, or before WH_FLOW_NEVER: the longest up to `most_us`, else the
+ * shortest. */
+static bool is_before(int64_t us, int64_t other_us, int64_t most_us) {
+    return us <= most_us ? other_us > most_us || us > other_us : us < other_us;
+}
+
+/* The time for which the layout processes a wafer where it lies: of the routes that it may go the longest up
+ * to `most_us`, else the shortest. */
+static int64_t process_us(const wh_schedule_state_t *check, int32_t number, int64_t most_us) {
     const wh_check_wafer_t *wafer = &check->wafers[number];
     if (!check->tool || wafer->place == WH_FLOW_NONE || wafer->visits == 0) {
         return 0;
     }
     const wh_flow_station_t *station = wh_check_station(check, check->schedule->places[wafer->place].station);
-    int64_t least_us = WH_FLOW_NEVER;
+    int64_t found_us = WH_FLOW_NEVER;
     for (size_t r = 0; r < check->tool->route_count && !wafer->is_lost; ++r) {
         if ((wafer->routes >> r & 1U) != 0) {
             const int64_t us = step_us(&check->tool->routes[r], wafer->visits, station, wafer->stay_recipe);
-            least_us = us < least_us ? us : least_us;
+            found_us = is_before(us, found_us, most_us) ? us : found_us;
         }
     }
-    return least_us == WH_FLOW_NEVER ? wh_flow_treatment(station, wafer->stay_recipe).process_us : least_us;
+    return found_us == WH_FLOW_NEVER ? wh_flow_treatment(station, wafer->stay_recipe).process_us : found_us;
+}
+
+int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
+    return process_us(check, number, -1);
 }
 
 /* ---------------------------------------------------------------------------------------------- processes */
@@ -53,10 +64,12 @@ static void check_again(wh_schedule_state_t *check, int32_t row, const wh_check_
     check->report->repeated += check->tool ? 0 : 1;
 }
 
-/* The layout's process is over when rows have lasted as long; they may last longer. */
+/* The layout's process is over when rows have lasted as long; they may last longer. While the wafer may go by
+ * several routes, it is the longest process that the rows are enough for. */
 static void note_whole(const wh_schedule_state_t *check, const wh_schedule_row_t *of, wh_check_wafer_t *wafer,
                        int32_t number) {
-    const int64_t left_us = wh_check_process_us(check, number) - wafer->processed_us;
+    const int64_t told_us = wafer->processed_us + of->end_us - of->begin_us + WH_SCHEDULE_INSTANT_US;
+    const int64_t left_us = process_us(check, number, told_us) - wafer->processed_us;
     const int64_t whole_us = of->begin_us + (left_us > 0 ? left_us : 0);
     if (check->tool && wafer->whole_us == WH_FLOW_NEVER && whole_us <= of->end_us) {
         wafer->whole_us = whole_us;
@@ -89,6 +102,23 @@ void wh_check_begin_process(wh_schedule_state_t *check, int32_t row) {
     wafer->process_row = row;
 }
 
+/* The wafer is taken out too soon: before its process is over, rule 8; where it has none, before the door
+ * behind it is shut, rule 13. */
+static void check_begin(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer,
+                        int32_t number) {
+    const bool is_told = wafer->process_row != WH_CHECK_NO_ROW;
+    const bool is_door = !is_told && wafer->done_us <= wafer->placed_us;
+    if (wh_check_is_behind(wafer->done_us, wh_check_row(check, row)->begin_us)) {
+        wh_check_found(
+            check, is_door ? WH_SCHEDULE_RULE_DOOR : WH_SCHEDULE_RULE_PROCESS, row,
+            is_told ? wafer->process_row : wafer->row,
+            is_door ? "begin_s: %.10g (expected %.10g or later, when the door behind the place of %s is shut)"
+                    : "begin_s: %.10g (expected %.10g or later, when the process of %s is over)",
+            wh_check_seconds(wh_check_row(check, row)->begin_us), wh_check_seconds(wafer->done_us),
+            name_of(check, number));
+    }
+}
+
 /* Rule 8. The row that takes the wafer out is `row`; WH_CHECK_NO_ROW: it stays until the end. */
 static void check_process(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer,
                           int32_t number) {
@@ -101,12 +131,8 @@ static void check_process(wh_schedule_state_t *check, int32_t row, const wh_chec
                        wh_check_seconds(wh_check_row(check, wafer->process_row)->end_us + needed_us -
                                         wafer->processed_us),
                        name_of(check, number), wh_check_seconds(needed_us));
-    } else if (row != WH_CHECK_NO_ROW &&
-               wh_check_is_behind(wafer->done_us, wh_check_row(check, row)->begin_us)) {
-        wh_check_found(check, WH_SCHEDULE_RULE_PROCESS, row, is_told ? wafer->process_row : wafer->row,
-                       "begin_s: %.10g (expected %.10g or later, when the process of %s is over)",
-                       wh_check_seconds(wh_check_row(check, row)->begin_us), wh_check_seconds(wafer->done_us),
-                       name_of(check, number));
+    } else if (row != WH_CHECK_NO_ROW) {
+        check_begin(check, row, wafer, number);
     }
 }
 

@@ -42,7 +42,7 @@ typedef struct {
     char theirs[WH_SCHEDULE_COLUMNS][WH_SCHEDULE_NAME + 1];
     bool has_functions;
     int names, actions, skip, expand, common, row; /* places on the stack; 0: not there */
-    bool *doubled;                                 /* columns whose names are there twice; on the stack */
+    bool *doubled, *used; /* columns whose names are there twice, and those that are read; on the stack */
     size_t fields;
     bool is_refused;
 } map_t;
@@ -236,9 +236,8 @@ static void translate_action(lua_State *L, const map_t *map, wh_schedule_cell_t 
     }
 }
 
-/* A row's function reads a column that is not there, or there twice. Upvalues: the map, the names. */
-static int refuse_column(lua_State *L) {
-    const map_t *map = lua_touserdata(L, lua_upvalueindex(1));
+/* A row's function reads a column that is not there, or there twice. */
+static int refuse_column(lua_State *L, const map_t *map) {
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
     char meant[WH_NEAREST_TEXT];
     const char **names = lua_newuserdatauv(L, (map->fields + 1) * sizeof *names, 0);
@@ -254,38 +253,109 @@ static int refuse_column(lua_State *L) {
                       wh_text_did_you_mean(meant, "; ", "", wh_text_nearest(name, names, map->fields)));
 }
 
+/* Upvalues of what rows have in common: the map, the names, the names' numbers. A row keeps its texts under
+ * keys of the map's own, so that each reading by name comes here. */
+static int read_field(lua_State *L) {
+    const map_t *map = lua_touserdata(L, lua_upvalueindex(1));
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(3)) != LUA_TNUMBER) {
+        return refuse_column(L, map);
+    }
+    const lua_Integer i = lua_tointeger(L, -1);
+    map->used[i] = true;
+    (void)lua_rawgetp(L, 1, &map->used[i]);
+    return 1;
+}
+
+static int next_field(lua_State *L) {
+    lua_settop(L, 2);
+    return lua_next(L, 1) != 0 ? 2 : 0;
+}
+
+/* pairs(row): over its names and texts, all of which are read so. */
+static int read_all(lua_State *L) {
+    const map_t *map = lua_touserdata(L, lua_upvalueindex(1));
+    lua_pushcfunction(L, next_field);
+    lua_createtable(L, 0, (int)map->fields);
+    for (size_t i = 0; i < map->fields; ++i) {
+        if (!map->doubled[i]) {
+            map->used[i] = true;
+            lua_rawgeti(L, lua_upvalueindex(2), (lua_Integer)i + 1);
+            (void)lua_rawgetp(L, 1, &map->used[i]);
+            lua_rawset(L, -3);
+        }
+    }
+    lua_pushnil(L);
+    return 3;
+}
+
+static void make_common(lua_State *L, map_t *map, int numbers) {
+    lua_createtable(L, 0, 2);
+    map->common = lua_gettop(L);
+    lua_pushlightuserdata(L, map);
+    lua_pushvalue(L, map->names);
+    lua_pushvalue(L, numbers);
+    lua_pushcclosure(L, read_field, 3);
+    lua_setfield(L, map->common, "__index");
+    lua_pushlightuserdata(L, map);
+    lua_pushvalue(L, map->names);
+    lua_pushcclosure(L, read_all, 2);
+    lua_setfield(L, map->common, "__pairs");
+}
+
 /* The list of the columns' names, and what rows have in common, at map->names and map->common. */
 static void make_names(lua_State *L, map_t *map) {
     const wh_rows_t *rows = &map->schedule->rows;
     map->fields = rows->count;
     map->doubled = lua_newuserdatauv(L, map->fields + 1, 0);
+    map->used = lua_newuserdatauv(L, map->fields + 1, 0);
     lua_createtable(L, (int)map->fields, 0);
     map->names = lua_gettop(L);
+    lua_createtable(L, 0, (int)map->fields);
     for (size_t i = 0; i < map->fields; ++i) {
-        map->doubled[i] = false;
+        map->doubled[i] = map->used[i] = false;
         for (size_t k = 0; k < map->fields; ++k) {
             map->doubled[i] = map->doubled[i] || (k != i && strcmp(rows->fields[k], rows->fields[i]) == 0);
         }
         lua_pushstring(L, rows->fields[i]);
+        lua_pushvalue(L, -1);
         lua_rawseti(L, map->names, (lua_Integer)i + 1);
+        if (map->doubled[i]) {
+            lua_pop(L, 1);
+        } else {
+            lua_pushinteger(L, (lua_Integer)i);
+            lua_rawset(L, map->names + 1);
+        }
     }
-    lua_createtable(L, 0, 1);
-    map->common = lua_gettop(L);
-    lua_pushlightuserdata(L, map);
-    lua_pushvalue(L, map->names);
-    lua_pushcclosure(L, refuse_column, 2);
-    lua_setfield(L, map->common, "__index");
+    make_common(L, map, map->names + 1);
+    for (size_t i = 0; i < WH_SCHEDULE_COLUMNS && map->expand == 0; ++i) {
+        if (map->columns[i].is_there && !map->columns[i].is_function) {
+            map->used[map->columns[i].field] = true;
+        }
+    }
 }
 
-/* A table of the file's row, at map->row. A column that is there twice is left out. */
+/* Columns of the file that the map has not read, and those of which no row needs what it has read. */
+static void note_unused(lua_State *L, const map_t *map) {
+    for (size_t i = 0; i < map->fields; ++i) {
+        if (!map->used[i]) {
+            lua_rawgeti(L, map->names, (lua_Integer)i + 1);
+            const char *name = lua_tostring(L, -1);
+            (void)wh_schedule_name(&map->schedule->schedule->unused, name[0] != '\0' ? name : "(no name)");
+            lua_pop(L, 1);
+        }
+    }
+    wh_schedule_note_unused(map->schedule);
+}
+
+/* The file's row, at map->row. A column that is there twice is left out. */
 static void make_row(lua_State *L, const map_t *map) {
     const wh_rows_t *rows = &map->schedule->rows;
     lua_createtable(L, 0, (int)map->fields);
     for (size_t i = 0; i < map->fields; ++i) {
         if (!map->doubled[i]) {
-            lua_rawgeti(L, map->names, (lua_Integer)i + 1);
             lua_pushstring(L, rows->fields[i]);
-            lua_rawset(L, -3);
+            lua_rawsetp(L, -2, &map->used[i]);
         }
     }
     lua_pushvalue(L, map->common);
@@ -379,6 +449,7 @@ static int read_rows(lua_State *L) {
         }
         lua_settop(L, map->row);
     }
+    note_unused(L, map);
     return 0;
 }
 

@@ -151,7 +151,7 @@ static bool take_side(wh_schedule_reader_t *reader, const wh_schedule_cell_t *ce
 /* --------------------------------------------------------------------------------------------------- rows */
 
 /* By action: the columns that it needs, by their bits. */
-#define NEEDS(COLUMN) (1U << (COLUMN))
+#define NEEDS(COLUMN) (1U << (unsigned)(COLUMN))
 static const unsigned needs[WH_SCHEDULE_ACTIONS] = {
     [WH_SCHEDULE_START] = NEEDS(WH_SCHEDULE_WAFER),
     [WH_SCHEDULE_LEAVE] = NEEDS(WH_SCHEDULE_WAFER),
@@ -219,6 +219,44 @@ static bool take_value(wh_schedule_reader_t *reader, const wh_schedule_cell_t *c
     return good;
 }
 
+/* Likewise the columns that its rows go by. */
+#define OF_ALL                                                                                               \
+    (NEEDS(WH_SCHEDULE_ACTION) | NEEDS(WH_SCHEDULE_STATION) | NEEDS(WH_SCHEDULE_BEGIN) |                     \
+     NEEDS(WH_SCHEDULE_END))
+#define OF_PLACE (OF_ALL | NEEDS(WH_SCHEDULE_SLOT) | NEEDS(WH_SCHEDULE_WAFER))
+#define OF_ACCESS (OF_PLACE | NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_ARM))
+#define OF_DOOR (OF_ALL | NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_VALUE))
+static const unsigned uses[WH_SCHEDULE_ACTIONS] = {
+    [WH_SCHEDULE_START] = OF_PLACE | NEEDS(WH_SCHEDULE_VALUE),
+    [WH_SCHEDULE_LEAVE] = OF_PLACE,
+    [WH_SCHEDULE_PICK] = OF_ACCESS,
+    [WH_SCHEDULE_PLACE] = OF_ACCESS,
+    [WH_SCHEDULE_SWAP] = OF_ACCESS | NEEDS(WH_SCHEDULE_WAFER2),
+    [WH_SCHEDULE_MOVE] = OF_ALL | NEEDS(WH_SCHEDULE_ROBOT) | NEEDS(WH_SCHEDULE_TO),
+    [WH_SCHEDULE_PROCESS] = OF_PLACE | NEEDS(WH_SCHEDULE_VALUE),
+    [WH_SCHEDULE_CLEAN] = OF_PLACE,
+    [WH_SCHEDULE_PUMP] = OF_ALL | NEEDS(WH_SCHEDULE_VALUE),
+    [WH_SCHEDULE_OPEN] = OF_DOOR,
+    [WH_SCHEDULE_CLOSE] = OF_DOOR};
+
+static void note_cells(wh_schedule_reader_t *reader, const wh_schedule_cell_t cells[],
+                       wh_schedule_action_t action) {
+    for (int i = 0; i < WH_SCHEDULE_COLUMNS; ++i) {
+        const unsigned bit = is_empty(&cells[i]) ? 0 : NEEDS(i);
+        reader->filled |= bit;
+        reader->used |= bit & uses[action];
+    }
+}
+
+void wh_schedule_note_unused(const wh_schedule_reader_t *reader) {
+    for (int i = 0; i < WH_SCHEDULE_COLUMNS; ++i) {
+        if ((reader->filled & ~reader->used & NEEDS(i)) != 0) {
+            const char *name = reader->theirs[i] ? reader->theirs[i] : wh_schedule_columns[i];
+            (void)wh_schedule_name(&reader->schedule->unused, name);
+        }
+    }
+}
+
 /* Cells that the action does not need are left aside, but for their names' being good ones. */
 static void leave_aside(wh_schedule_row_t *row) {
     const bool is_access = wh_schedule_is_access(row->action);
@@ -245,6 +283,7 @@ bool wh_schedule_add(wh_schedule_reader_t *reader, const wh_schedule_cell_t cell
     if (schedule->count == MOST_ROWS) {
         return refuse(reader, "more than %d rows", MOST_ROWS);
     }
+    note_cells(reader, cells, row.action);
     leave_aside(&row);
     schedule->rows = wh_array_grow(schedule->rows, schedule->count, &schedule->capacity, sizeof row);
     schedule->rows[schedule->count++] = row;
@@ -349,6 +388,7 @@ bool wh_schedule_read(wh_schedule_t *schedule, const char *path, char message[16
     wh_schedule_reader_t reader = {.schedule = schedule};
     const bool read = wh_schedule_open(&reader, schedule, path, '\0') && read_rows(&reader);
     if (read) {
+        wh_schedule_note_unused(&reader);
         wh_schedule_finish(schedule);
     } else {
         (void)snprintf(message, 1600, "%s", reader.message);

@@ -27,6 +27,7 @@ typedef struct {
     wh_schedule_t *schedule;
     wh_rows_t rows;
     const char *theirs[WH_SCHEDULE_COLUMNS]; /* the file's name of a column, for messages; null: as ours */
+    unsigned filled, used;                   /* columns with cells, and those that some row needs: bits */
     char message[1600];                      /* the error; empty: none */
 } wh_schedule_reader_t;
 
@@ -40,6 +41,9 @@ bool wh_schedule_next(wh_schedule_reader_t *reader, size_t fields);
 
 /* Adds a row of the schedule, of the line that was read last. False, with a message, if it is refused. */
 bool wh_schedule_add(wh_schedule_reader_t *reader, const wh_schedule_cell_t cells[WH_SCHEDULE_COLUMNS]);
+
+/* To be called once behind the last row: notes columns that have cells, of which no row needs any. */
+void wh_schedule_note_unused(const wh_schedule_reader_t *reader);
 
 /* Reads a whole file with our columns into a zero schedule, which is to be closed in any case. False, with
  * the reason in `message`. Cost: linear in the file, plus a sort of the places. */

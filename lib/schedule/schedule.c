@@ -101,5 +101,6 @@ void wh_schedule_close(wh_schedule_t *schedule) {
     close_names(&schedule->wafers);
     close_names(&schedule->stations);
     close_names(&schedule->recipes);
+    close_names(&schedule->unused);
     memset(schedule, 0, sizeof *schedule);
 }

@@ -82,6 +82,7 @@ typedef struct {
     wh_schedule_row_t *rows;
     size_t count, capacity;
     wh_schedule_names_t robots, wafers, stations, recipes;
+    wh_schedule_names_t unused;  /* columns of the file whose cells no row needs */
     wh_schedule_place_t *places; /* by station, then by slot */
     size_t place_count;
     bool ends_whole; /* the file's last line has a line end */
