@@ -255,19 +255,18 @@ static bool look_into_first(const wh_flow_state_t *state, int32_t robot, const w
     return is_awaited;
 }
 
-/* Looks into all steps from the earliest on until there is a wafer. Those of one number stand in the order of
- * their routes. */
+/* Looks into all steps from the earliest on until there is a wafer. Those of one number, in several routes,
+ * are one. */
 static void look_into_all(const wh_flow_state_t *state, int32_t robot, const wh_flow_round_t *round,
                           found_t *found) {
-    for (size_t i = round->count; i > 0 && found->wafer == WH_FLOW_NONE;) {
-        size_t first = i - 1;
-        while (first > 0 && round->tasks[first - 1].step == round->tasks[i - 1].step) {
-            --first;
+    int32_t step = WH_FLOW_NONE;
+    for (size_t i = round->count; i > 0; --i) {
+        const wh_flow_task_t *task = &round->tasks[i - 1];
+        if (found->wafer != WH_FLOW_NONE && task->step != step) {
+            return;
         }
-        for (size_t k = first; k < i && found->wafer == WH_FLOW_NONE; ++k) {
-            look_into(state, robot, &round->tasks[k], found);
-        }
-        i = first;
+        step = task->step;
+        look_into(state, robot, task, found);
     }
 }
 

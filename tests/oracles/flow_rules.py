@@ -156,7 +156,8 @@ def swap(model, robot):
         able = {step: wafers for step, wafers in able.items() if wafers}
         if not able:
             return False
-        wanted = able[min(able, key=lambda step: (step[0], model.routes.index(step[1])))]
+        earliest = min(number for number, route in able)
+        wanted = [wafer for (number, route), wafers in able.items() if number == earliest for wafer in wafers]
     return swap_empty(model, robot, first_entered(wanted))
 
 
