@@ -131,6 +131,8 @@ static int64_t next_instant(const wh_flow_state_t *state) {
         next_us = until_us > state->now_us && until_us < next_us ? until_us : next_us;
         next_us = held_us > state->now_us && held_us < next_us ? held_us : next_us;
     }
+    const int64_t list_us = wh_flow_list_next(state);
+    next_us = list_us < next_us ? list_us : next_us;
     return next_us != WH_FLOW_NEVER && idle_us < next_us ? idle_us : next_us;
 }
 

@@ -1,9 +1,9 @@
 /* Why something of a flow began when it did: what ended then, and was needed most. */
 #include "path_internal.h"
 
-/* The ranks of causes: needed by the same robot, by what begins, by what follows on that, by another robot
- * that begins with it; or it ended at that time. */
-enum { NEEDED_FIRST, NEEDED, NEEDED_ONWARD, NEEDED_BESIDE, ENDED };
+/* The ranks of causes: its place was emptied just in time; needed by the same robot, by what begins, by what
+ * follows on that, by another robot that begins with it; or it ended at that time. */
+enum { EMPTIED, NEEDED_FIRST, NEEDED, NEEDED_ONWARD, NEEDED_BESIDE, ENDED };
 
 size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us) {
     size_t low = 0, high = log->count;
@@ -111,13 +111,24 @@ static int need_of_end(const aim_t *aim, int32_t robot, const wh_flow_event_t *e
                                                   : ENDED;
 }
 
+/* True if a list brings a wafer into a place as another robot has emptied it: the transfer began so that both
+ * end at one time. */
+static bool is_just_emptied(const wh_flow_path_t *path, const aim_t *aim, int32_t robot,
+                            const wh_flow_event_t *ended, int64_t us) {
+    const wh_flow_event_t *access = aim->access;
+    return path->plan->rule == WH_FLOW_LISTS && takes(ended) && ended->robot != robot && access &&
+           access->kind == WH_FLOW_EVENT_PLACE && access->begin_us == us && access->place == ended->place;
+}
+
 static void offer_ends(const wh_flow_path_t *path, const aim_t *aim, int32_t robot, int64_t us,
                        wh_flow_cause_t *best) {
     for (size_t i = wh_flow_first_ending(path->log, us);
          i < path->log->count && path->log->events[i].end_us == us; ++i) {
         const wh_flow_event_t *ended = &path->log->events[i];
         if (ended->begin_us < us) {
-            offer_end(best, need_of_end(aim, robot, ended), ended);
+            offer_end(best,
+                      is_just_emptied(path, aim, robot, ended, us) ? EMPTIED : need_of_end(aim, robot, ended),
+                      ended);
         }
     }
 }

@@ -19,7 +19,7 @@ typedef struct {
 } wh_flow_path_t;
 
 /* The rank of a cause that nobody knows: nothing ended. */
-#define WH_FLOW_CAUSE_UNKNOWN 5
+#define WH_FLOW_CAUSE_UNKNOWN 6
 
 /* Why something began at an instant. */
 typedef struct {

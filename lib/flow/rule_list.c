@@ -189,3 +189,24 @@ bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *or
     }
     return !why;
 }
+
+/* True if the robot stands in front of the wafer of its line, which waits for a place alone. */
+static bool waits_for_place(const wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const wh_flow_order_t *wish = &at->wish;
+    return at->action == WH_FLOW_IDLE && at->has_wish && wish->what == WH_FLOW_TRANSFER &&
+           wish->wafer != WH_FLOW_NONE && at->station == wish->at && at->held_us <= state->now_us &&
+           wh_flow_may_take(state, robot, wish->wafer) &&
+           wh_flow_takeable_us(state, robot, wish->wafer) <= state->now_us;
+}
+
+int64_t wh_flow_list_next(const wh_flow_state_t *state) {
+    int64_t next_us = WH_FLOW_NEVER;
+    for (int32_t r = 0; state->plan->rule == WH_FLOW_LISTS && r < (int32_t)state->tool->robot_count; ++r) {
+        if (waits_for_place(state, r)) {
+            const int64_t us = wh_flow_in_time_us(state, r, state->robots[r].wish.wafer);
+            next_us = us < next_us ? us : next_us;
+        }
+    }
+    return next_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : wh_flow_slice_us(state, next_us);
+}

@@ -36,6 +36,9 @@ bool wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rule
 bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                       wh_flow_order_t *order);
 bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
+/* The next time after now at which a transfer of a list may begin though nothing ends then: its place, which
+ * is being emptied, will be empty in time. WH_FLOW_NEVER: there is none. */
+int64_t wh_flow_list_next(const wh_flow_state_t *state);
 bool wh_flow_ask_own(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
 
 /* Fills the order that carries out a line. Null, or why the line can never be carried out; `is_known`: it

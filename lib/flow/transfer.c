@@ -263,6 +263,41 @@ int32_t wh_flow_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t 
     return WH_FLOW_NONE;
 }
 
+/* The first time after now from which on a place of the station that is being emptied will be empty after so
+ * long. */
+static int64_t next_emptied_us(const wh_flow_state_t *state, int32_t station, int64_t ahead_us) {
+    const wh_flow_station_t *of = &state->tool->stations[station];
+    int64_t next_us = WH_FLOW_NEVER;
+    for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
+        const int64_t leaving_us = state->places[p].leaving_us;
+        const int64_t us = leaving_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : leaving_us - ahead_us;
+        next_us = us > state->now_us && us < next_us ? us : next_us;
+    }
+    return next_us;
+}
+
+int64_t wh_flow_in_time_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const wh_flow_tool_t *tool = state->tool;
+    const int32_t from = state->robots[robot].station, number = wh_flow_next_step(state, wafer);
+    int64_t next_us = WH_FLOW_NEVER;
+    if (number == WH_FLOW_NONE) {
+        return next_us;
+    }
+    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, number);
+    for (size_t i = 0; i < step->station_count; ++i) {
+        const int32_t to = step->stations[i];
+        if (!tool->serves[wh_flow_of(tool, robot, to)]) {
+            continue;
+        }
+        const int64_t ahead_us = wh_flow_pick_us(state, robot, from) +
+                                 wh_flow_move_us(tool, robot, from, to) +
+                                 tool->doors[wh_flow_of(tool, robot, to)].open_us;
+        const int64_t us = next_emptied_us(state, to, ahead_us);
+        next_us = us < next_us ? us : next_us;
+    }
+    return next_us;
+}
+
 int64_t wh_flow_begin_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t *there_us) {
     const int64_t from_us = wh_flow_takeable_us(state, robot, wafer);
     *there_us = state->now_us + wh_flow_move_us(state->tool, robot, state->robots[robot].station,

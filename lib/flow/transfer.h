@@ -69,6 +69,10 @@ bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer
  * another pressure that does not pump. */
 int64_t wh_flow_takeable_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
 
+/* For a robot in front of a wafer: the first time after now from which on a place of the wafer's next step
+ * that is being emptied will be empty by the time the wafer comes there; WH_FLOW_NEVER: none is. */
+int64_t wh_flow_in_time_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
+
 /* True if at this instant a robot that stands in front of the station may put its blade in: it is not in use,
  * its door is not shutting, it has not failed, and its pressure is the robot's. */
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station);

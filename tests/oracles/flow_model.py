@@ -440,6 +440,13 @@ class Model:
         self.relaxed = True
         return True
 
+    def in_time(self, robot, wafer):
+        """From when on places of its next step that are being emptied will be empty by the time the wafer comes there (rule 4)."""
+        for place in wafer.steps[self.following(wafer, wafer.step)][0]:
+            if place.leaves is not None and place.station.name in robot.serves:
+                way = robot.move(wafer.place.station.name, place.station.name) + place.station.door(robot)[0]
+                yield place.leaves - way - robot.seconds("pick", wafer.place.station.name) - wafer.place.station.door(robot)[0]
+
     def next_instant(self):
         times = {time for time in self.instants if time > self.now}
         times |= {robot.doing[0] for robot in self.robots if robot.doing}
@@ -449,6 +456,7 @@ class Model:
             times |= {place.clean_end for place in station.places if place.clean_end is not None}
         if self.last_start is not None and any(wafer.step == 0 and wafer.lies() for wafer in self.wafers):
             times.add(self.last_start + self.takt)
+        times |= {time for robot in self.robots if robot.doing is None and robot.waits for time in self.in_time(robot, robot.waits)}
         times = {time for time in times if time > self.now}
         if times:   # a clean for want of wafers brings nobody further
             idle = (self.idle_due(place) for station in self.stations.values() for place in station.places)

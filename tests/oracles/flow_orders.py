@@ -11,7 +11,7 @@ def pumped_by_hand(rule):
 
 def ask(model, robot):
     """Asks the rules once. True if the robot begins anything."""
-    robot.told = robot.brings = None
+    robot.told = robot.brings = robot.waits = None
     stranded = [wafer for wafer in robot.held() if wafer.stranded and not wafer.ended]
     if stranded:
         robot.told = "waiting for place"
@@ -126,6 +126,8 @@ def begin_told(model, robot, action):
             robot.told = "waiting for place"
         return bool(places), bool(places)
     begun = begin_or_go(model, robot, wafer, told_places(model, robot, wafer, action))
+    if not begun and isinstance(model.rule, dict) and action[1] != "keep":
+        robot.waits = wafer
     return begun, begun
 
 

@@ -69,6 +69,7 @@ class Robot:
         self.going = None       # the station to which it moves
         self.told = None        # why it waits, a class of IDLE_CLASSES
         self.brings = None      # (station, wafer): it is told to bring this one, which it keeps, into an empty place there
+        self.waits = None       # the wafer in front of which it stands by its list, and which has no place to go to yet
         self.intervals = []     # (class, begin, end)
         self.behind = None      # backward: the step that was served last
         self.next = 0           # lists: the next action

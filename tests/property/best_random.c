@@ -22,7 +22,7 @@ static void open_case(flow_case_t *flow) {
     const double swap = wh_test_below(3) == 0 ? 1 + (double)wh_test_below(4) : 0; /* 0: the usual one */
     flow_robot(flow, "R", two ? "L A B" : "L U A B C D", handle, 1 + (double)wh_test_below(3), move, swap);
     if (two) {
-        flow_robot(flow, "S", "A B C D U", handle, 2, 1, swap);
+        flow_robot(flow, "S", "A B C D U", 1 + (double)wh_test_below(12), 2, 1, swap);
     }
     for (int32_t s = 2; s < 6; ++s) {
         flow->tool.stations[s].process_us = wh_test_below(4) == 0 ? 0 : (int64_t)wh_test_below(30) * FLOW_S;
