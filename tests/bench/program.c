@@ -104,6 +104,23 @@ static double cost_of(const char *command) {
                            before.ru_stime.tv_usec);
 }
 
+/* How much faster than real time a run is by its processor time, its start and its table included. */
+static void time_by_processor(const char *row, const char *run, double goal) {
+    char command[200];
+    double times[FEW_RUNS];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    (void)snprintf(command, sizeof command, "build/waferhand run %s --json", run);
+    const double simulated = ask(command, "\"simulated_s\": ");
+    (void)snprintf(command, sizeof command, "build/waferhand run %s >/dev/null", run);
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        times[i] = simulated / cost_of(command);
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "x real time", &spread, false, goal);
+}
+
 /* How many times less a counted run costs than the full one. */
 static void time_counted(const char *row, const char *full, double goal) {
     double times[FEW_RUNS];
@@ -232,6 +249,11 @@ int main(int argc, char **argv) {
     time_run("run, real time", "01_transfer", RUNS, 5000);
     /* Two robots; collisions between all parts and the smallest gaps are checked. */
     time_run("tool, real time", "27_tool", FEW_RUNS, 300);
+    /* Collisions, doors, pumps, cleans, vacuum that builds up, wafers that settle and may slip. */
+    time_by_processor("three robots, collisions", "tests/bench/three_robots.lua", 150);
+    time_by_processor("three robots, look ahead", "tests/bench/three_robots.lua --set wafers=2 --set ahead=1",
+                      0);
+    count_each("three robots, a wafer", "tests/bench/three_robots.lua --brief --set wafers=", 2, 4, 0);
     time_counted("counted, a long series",
                  "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null", 5);
     time_counted("counted, passive pads",
