@@ -18,8 +18,8 @@ int32_t wh_check_recipe(const wh_schedule_state_t *check, const wh_schedule_row_
                                       wh_schedule_text(&check->schedule->recipes, row->recipe - 1));
 }
 
-/* True if one process comes before another one, or before WH_FLOW_NEVER: the longest up to `most_us`, else the
- * shortest. */
+/* True if one process comes before another one, or before WH_FLOW_NEVER: the longest up to `most_us`, else
+ * the shortest. */
 static bool is_before(int64_t us, int64_t other_us, int64_t most_us) {
     return us <= most_us ? other_us > most_us || us > other_us : us < other_us;
 }
