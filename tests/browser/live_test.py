@@ -59,6 +59,21 @@ class Live(unittest.TestCase):
         print(f"live page: interactive after {first:.0f} ms, machine's load {os.getloadavg()[0]:.1f}")
         self.assertLess(first, 10000)
 
+    def test_first_picture(self):
+        """A tool with 25 wafers, in the middle of its run, is seen within a second."""
+        page = self.page
+        served = self.show("run", "lua/examples/36_tool_flow.lua", "--page", "0", "--rate", "20")
+        taken = []
+        for _ in range(3):
+            page.driver.get("about:blank")
+            page.visit(f"http://{served.place}/")
+            taken.append(page.taken())
+        load = max(1, os.getloadavg()[0] / os.cpu_count())
+        print(f"live page of a tool with 25 wafers: interactive after {min(taken):.0f} ms at best of 3, machine's load {load:.1f} a processor")
+        self.assertEqual(page.js("return Waferhand.shown.names.wafers.length"), 25)
+        self.assertLess(min(taken), 1000 * load)
+        self.assertEqual(page.faults(), [])
+
     def test_back_in_time(self):
         """The slider goes back while the cell goes on; the button and the key return to the present."""
         page = self.page
@@ -77,6 +92,9 @@ class Live(unittest.TestCase):
         self.assertTrue(0.4 * begin < there < 0.6 * end, (begin, there, end))
         page.wait(f"return Waferhand.clock.end > {end + 0.5}")
         self.assertEqual(page.now(), there)
+        # The slider's end goes along.
+        page.wait("return Math.abs(document.getElementById('scrubber').max * Waferhand.clock.slice - Waferhand.clock.end) < 1", 20)
+        self.assertAlmostEqual(page.js("return document.getElementById('scrubber').value * Waferhand.clock.slice"), there, delta=0.01)
         pose = page.js("return Waferhand.robot.gripper(Waferhand.shown.tracks, 0, arguments[0])", there)
         self.assertEqual(len(pose["r"]), 3)
         page.js("document.getElementById('back').click()")
@@ -92,6 +110,26 @@ class Live(unittest.TestCase):
         # Playing from the past ends in the present.
         page.js("Waferhand.clock.setSpeed(100); Waferhand.clock.seek(0); Waferhand.clock.play()")
         page.wait("return Waferhand.clock.following", 20)
+        self.assertEqual(page.faults(), [])
+
+    def test_tables_grow(self):
+        """The newest rows come first, those that stay are not made again, and all of them stay once they were asked for."""
+        page = self.page
+        self.show("run", "tests/bench/hour.lua", "--budget", "1e12", "--page", "0", "--rate", "20")
+        page.wait("return document.querySelectorAll('#events tbody tr').length >= 2")
+        rows = "Array.from(document.querySelectorAll('#events tbody tr'))"
+        page.js(f"window.first = {rows}.pop(); window.count = {rows}.length")
+        page.wait(f"return {rows}.length > count + 4", 40)
+        self.assertTrue(page.js(f"return {rows}.pop() === first"))
+        self.show("run", "tests/bench/hour.lua", "--budget", "1e12", "--page", "0", "--rate", "1000")
+        page.wait("return Waferhand.shown.events.length > 150", 40)
+        page.wait(f"return {rows}.length === 100")
+        times = page.js(f"return {rows}.map((each) => parseFloat(each.querySelector('button').textContent.replace(/[^0-9.]/g, '')))")
+        self.assertEqual(times, sorted(times, reverse=True))
+        page.js("document.querySelector('#events > button').click()")
+        count = page.js(f"return {rows}.length")
+        self.assertGreater(count, 150)
+        page.wait(f"return {rows}.length > {count}", 40)
         self.assertEqual(page.faults(), [])
 
     def test_stops_at_a_hit(self):

@@ -269,6 +269,27 @@ class Playground(unittest.TestCase):
         self.assertIn("failed", self.page.text("#verdict"))
         self.sound()
 
+    def test_paper(self):
+        """Printed from the dark page: verdict, picture, tables and all texts, black on white; nothing of it stays."""
+        page = self.page
+        self.shown()
+        self.addCleanup(page.cdp, "Emulation.setEmulatedMedia", media="", features=[])
+        self.type("lua/layouts/paper.lua", self.text("lua/layouts/paper.lua").replace("slot = 1 }", "slot = 1, dx = 60 }"))
+        self.shown()
+        page.js("Playground.bar.choose('dark'); dispatchEvent(new Event('beforeprint'))")
+        page.cdp("Emulation.setEmulatedMedia", media="print", features=[])
+        page.shoot("playground_printed")
+        text = page.js("return document.body.innerText")
+        for told in ("failed", "by 10.000 mm", "Misses and complaints", 'get("A", 1)', "dx = 60"):
+            self.assertIn(told, text)
+        self.assertGreater(page.js("return document.querySelector('#paper img').naturalWidth"), 300)
+        self.assertEqual(page.js("return ['main', '#bar', '#panes'].map((each) => getComputedStyle(document.querySelector(each)).display)"),
+                         ["none"] * 3)
+        self.assertEqual(page.js("return getComputedStyle(document.querySelector('#paper pre')).color"), "rgb(22, 32, 43)")
+        page.js("dispatchEvent(new Event('afterprint'))")
+        self.assertEqual(page.js("return [document.getElementById('paper'), document.documentElement.dataset.theme]"), [None, "dark"])
+        self.sound()
+
     def test_looks(self):
         """At both widths and in both colours nothing is wider than the page; screenshots stay in build/browser."""
         page = self.page

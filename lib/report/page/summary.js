@@ -129,8 +129,8 @@
     function tiles(doc) {
         const flow = W.flow.tiles(doc);
         const isFlowAlone = flow.length > 0 && !doc.scene;
-        return flow.concat(expectations(doc), isFlowAlone ? [] : [commands(doc), events(doc), throughput(doc), duration(doc),
-            recording(doc)]).filter(Boolean);
+        return flow.concat(expectations(doc), isFlowAlone ? [] : [commands(doc), events(doc),
+            flow.length > 0 ? null : throughput(doc), duration(doc), recording(doc)]).filter(Boolean);
     }
 
     W.summary = { notes,

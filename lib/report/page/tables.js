@@ -4,6 +4,7 @@
     'use strict';
 
     const SHOWN = 400;
+    const NEWEST = 100; /* of a document that grows, which is a picture's time to lay out */
 
     /* A button in a table that moves the time. */
     function goTo(t) {
@@ -22,27 +23,81 @@
     /* Right-aligned text. */
     const num = (text) => ({ numeric: text });
 
+    /* A section with a table that has no rows yet; its heads are aligned like the cells of a row. */
+    function framed(id, title, heads, like) {
+        const body = W.element('tbody');
+        const kinds = Array.from(like.cells, (cell) => cell.className);
+        const head = W.element('tr', {}, ...heads.map((text, i) => W.element('th', { scope: 'col', class: kinds[i] }, text)));
+        const made = W.element('section', { class: 'group', id }, W.element('h2', {}, title),
+            W.element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': title },
+                W.element('table', {}, W.element('thead', {}, head), body)));
+        return { made, body };
+    }
+
+    const without = (id, title, reason) => W.element('section', { class: 'group', id }, W.element('h2', {}, title),
+        W.why(reason));
+
     /* A section with a table; rows after the first few hundred wait for a button. */
     function section(id, title, heads, all, reason) {
-        const rows = W.shown && W.shown.grows ? all.slice().reverse() : all;
-        const made = W.element('section', { class: 'group', id }, W.element('h2', {}, title));
-        if (rows.length === 0) {
-            made.append(W.why(reason));
-            return made;
+        if (all.length === 0) {
+            return without(id, title, reason);
         }
-        const body = W.element('tbody', {}, ...rows.slice(0, SHOWN).map((each) => each()));
-        const kinds = Array.from(body.rows[0].cells, (cell) => cell.className);
-        const head = W.element('tr', {}, ...heads.map((text, i) => W.element('th', { scope: 'col', class: kinds[i] }, text)));
-        made.append(W.element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': title },
-            W.element('table', {}, W.element('thead', {}, head), body)));
-        if (rows.length > SHOWN) {
+        const rows = all.slice(0, SHOWN).map((each) => each());
+        const { made, body } = framed(id, title, heads, rows[0]);
+        body.append(...rows);
+        if (all.length > SHOWN) {
             const more = W.element('button', { type: 'button', click() {
-                body.append(...rows.slice(SHOWN).map((each) => each()));
+                body.append(...all.slice(SHOWN).map((each) => each()));
                 more.remove();
-            } }, `Show all ${rows.length}`);
+            } }, `Show all ${all.length}`);
             made.append(more);
         }
         return made;
+    }
+
+    /* The table of a list: [id, title, heads, list, the row of an entry, the reason for an empty one]. */
+    const still = ([id, title, heads, list, make, reason]) => section(id, title, heads, list.map((each) => () => make(each)),
+        reason);
+
+    /* Rows of the newest entries come first; a row whose entry is still the same is not made again. */
+    function renew(body, rows, newest, make) {
+        const known = new Map(rows);
+        rows.clear();
+        newest.forEach((entry) => rows.set(entry, known.get(entry) || make(entry)));
+        known.forEach((old, entry) => rows.has(entry) || old.remove());
+        newest.forEach((entry, i) => {
+            if (body.rows[i] !== rows.get(entry)) {
+                body.insertBefore(rows.get(entry), body.rows[i] || null);
+            }
+        });
+    }
+
+    /* The table of a list that grows. */
+    function growing([id, title, heads, list, make, reason], host) {
+        const rows = new Map();
+        let limit = NEWEST;
+        let made = without(id, title, reason);
+        let body = null;
+        const more = W.element('button', { type: 'button', click() {
+            limit = Infinity;
+            show();
+        } });
+        function show() {
+            if (!body && list.length > 0) {
+                const before = made;
+                ({ made, body } = framed(id, title, heads, make(list[0])));
+                made.append(more);
+                before.replaceWith(made);
+            }
+            if (body) {
+                renew(body, rows, list.slice(-limit).reverse(), make);
+                more.textContent = `Show all ${list.length}`;
+                more.hidden = list.length <= limit;
+            }
+        }
+        host.append(made);
+        show();
+        W.clock.on('growth', show);
     }
 
     function wafers(doc) {
@@ -57,26 +112,19 @@
             'The document does not hold where the wafers lie.');
     }
 
-    function expectations(doc) {
-        const rows = doc.expectations.map((each) => () => row([num(String(each.line)), each.text,
-            each.ok ? '\u2713 came out so' : '\u2717 did not'], each.ok ? 'good' : 'bad'));
-        return section('expectations', 'Expectations, and their outcome', ['line', 'expected', 'came out'], rows,
-            'The script states no expectations.');
-    }
+    const expectations = (doc) => ['expectations', 'Expectations, and their outcome', ['line', 'expected', 'came out'],
+        doc.expectations, (each) => row([num(String(each.line)), each.text, each.ok ? '\u2713 came out so' : '\u2717 did not'],
+            each.ok ? 'good' : 'bad'), 'The script states no expectations.'];
 
     function result(command) {
         const going = typeof command.end_s === 'number' ? 'done' : 'runs';
         return command.error ? `${command.error}: ${command.message || 'error'}` : going;
     }
 
-    function commands(doc) {
-        const rows = doc.commands.map((each) => () => row([num(String(each.line)), each.text, goTo(each.begin_s),
-            num(W.number(each.end_s, 3)),
-            num(typeof each.end_s === 'number' ? W.number(each.end_s - each.begin_s, 3) : W.DASH),
-            result(each)], each.error ? 'bad' : null));
-        return section('commands', 'Commands', ['line', 'command', 'begins (s)', 'ends (s)', 'takes (s)', 'result'], rows,
-            'The document holds no commands: a log of moves alone has none.');
-    }
+    const commands = (doc) => ['commands', 'Commands', ['line', 'command', 'begins (s)', 'ends (s)', 'takes (s)', 'result'],
+        doc.commands, (each) => row([num(String(each.line)), each.text, goTo(each.begin_s), num(W.number(each.end_s, 3)),
+            num(typeof each.end_s === 'number' ? W.number(each.end_s - each.begin_s, 3) : W.DASH), result(each)],
+        each.error ? 'bad' : null), 'The document holds no commands: a log of moves alone has none.'];
 
     /* Further values of an event: how close, and against what. */
     function particulars(event) {
@@ -92,14 +140,11 @@
         return found.join('; ');
     }
 
-    function events(doc) {
-        const rows = doc.events.map((each) => () => row([goTo(each.t), W.words(each.kind),
-            each.parts ? each.parts.join(' \u2013 ') : each.wafer || W.DASH, each.gripper || W.DASH,
-            num(W.number(Math.abs(each.dr_proj_z), 4)), num(W.number(each.dr_proj_xy_norm, 4)),
-            num(W.number(each.n1_proj_n2, 6)), particulars(each)], W.events.colour(each.kind)));
-        return section('events', 'Events', ['time (s)', 'event', 'wafer or parts', 'gripper', '|dr_proj_z| (mm)',
-            '|dr_proj_xy| (mm)', 'n1_proj_n2', 'more'], rows, 'Nothing happened in this run.');
-    }
+    const events = (doc) => ['events', 'Events', ['time (s)', 'event', 'wafer or parts', 'gripper', '|dr_proj_z| (mm)',
+        '|dr_proj_xy| (mm)', 'n1_proj_n2', 'more'], doc.events, (each) => row([goTo(each.t), W.words(each.kind),
+        each.parts ? each.parts.join(' \u2013 ') : each.wafer || W.DASH, each.gripper || W.DASH,
+        num(W.number(Math.abs(each.dr_proj_z), 4)), num(W.number(each.dr_proj_xy_norm, 4)),
+        num(W.number(each.n1_proj_n2, 6)), particulars(each)], W.events.colour(each.kind)), 'Nothing happened in this run.'];
 
     function whatBegins(told) {
         return told.kind === 'port_begins' ? `${told.step}${told.carrier ? ' of ' + told.carrier : ''}`
@@ -165,29 +210,15 @@
             'Clearances are not shown: collisions were not checked in this run.');
     }
 
-    /* The tables of a document that grows are made anew when their lists have grown; others are known only at its end. */
-    const GROWING = [expectations, commands, events];
-    const counts = (doc) => [doc.expectations, doc.commands, doc.events].map((list) => list.length)
-        .concat(doc.commands.filter((command) => typeof command.end_s === 'number').length).join();
-
-    function renew(doc, host, kept) {
-        if (kept.counts !== counts(doc) && !host.contains(document.activeElement)) {
-            kept.counts = counts(doc);
-            host.replaceChildren(...GROWING.map((table) => table(doc)));
-        }
-    }
-
-    W.tables = { section, row, num, expectations,
+    W.tables = { section, row, num, expectations: (doc) => still(expectations(doc)),
         start(doc, host) {
             if (doc.grows) {
-                const kept = {};
                 const own = W.element('div');
                 host.append(own, ...W.summary.notes(doc));
-                renew(doc, own, kept);
-                W.clock.on('growth', () => renew(doc, own, kept));
+                [expectations, commands, events].forEach((table) => growing(table(doc), own));
                 return;
             }
-            host.append(...[wafers(doc), expectations(doc), commands(doc), stations(doc), events(doc), clearances(doc),
-                throughput(doc)].filter((part) => part !== null));
+            host.append(...[wafers(doc), still(expectations(doc)), still(commands(doc)), stations(doc), still(events(doc)),
+                clearances(doc), throughput(doc)].filter((part) => part !== null));
         } };
 }(window.Waferhand));

@@ -101,7 +101,10 @@
                 W.element('span', {}, transport.time, transport.whole), transport.here));
         W.clock.on('time', showTime);
         W.clock.on('play', showPlay);
-        W.clock.on('growth', ticks);
+        W.clock.on('growth', (clock) => {
+            ticks();
+            showTime(clock);
+        });
         W.theme.on(ticks);
         W.observe(transport.ticks, ticks);
         showTime(W.clock);
