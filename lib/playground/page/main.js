@@ -36,6 +36,7 @@
         P.editor.start();
         P.result.start();
         P.picture.start();
+        P.paper.start();
         P.bar.pane('edit');
         P.on('edited', edited);
         await open();
