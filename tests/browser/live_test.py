@@ -231,8 +231,10 @@ class Live(unittest.TestCase):
         served.said("prompt, at ")
         host = next(line.rsplit(" at ", 1)[1].strip() for line in served.lines if "prompt, at " in line)
         line = socket.create_connection(("127.0.0.1", int(host.rsplit(":", 1)[1])), 20)
+        self.assertTrue(page.js("return document.getElementById('commands-chart').hidden"))  # there is no command yet
         line.sendall(b"GET A 1\r\n")
         page.wait("return Waferhand.clock.end > 0.1")
+        page.wait("return !document.getElementById('commands-chart').hidden")
         line.sendall(b"HOLD\r\nSTATUS\r\n")
         page.wait("return document.getElementById('liveline').textContent.includes('held')")
         page.wait("return document.getElementById('card-tasks').textContent.includes('held')")

@@ -229,18 +229,26 @@
         return [W.element('div', { class: 'frame' }, chart.canvas, chart.cursor), ...readout, chart.banded];
     }
 
+    /* A chart of a document that grows is hidden until it has something to show. */
     lanes.section = function (group) {
         const body = group.lanes.length > 0 || W.clock.grows ? make(group) : [W.why(group.why)];
         if (group.note && group.lanes.length > 0 && !W.clock.grows) {
             body.push(W.why(group.note));
         }
-        return W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
+        const made = W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
+        const chart = charts.find((each) => each.group === group);
+        if (chart) {
+            chart.section = made;
+            made.hidden = group.lanes.length === 0;
+        }
+        return made;
     };
 
     /* The lanes of a document that has grown. */
     lanes.renew = function (groups) {
         charts.forEach((chart) => {
             chart.group = groups.find((group) => group.id === chart.group.id) || chart.group;
+            chart.section.hidden = chart.group.lanes.length === 0;
             draw(chart);
         });
     };
