@@ -526,6 +526,13 @@ static wh_pose_t turned(double roll, double pitch, double yaw) {
     return pose;
 }
 
+/* An upright beam is up to a degree from the vertical, towards any side. */
+static void lean(wh_beam_t *beam) {
+    beam->ex = wh_test_uniform(-0.02, 0.02);
+    beam->ey = wh_test_uniform(-0.02, 0.02);
+    beam->ez = sqrt(1 - beam->ex * beam->ex - beam->ey * beam->ey);
+}
+
 static lesson_t draw_lesson(void) {
     lesson_t lesson = {.late = wh_test_uniform(-10e-6, 10e-6)};
     wh_pose_t drawn =
@@ -533,6 +540,7 @@ static lesson_t draw_lesson(void) {
     drawn.r = wh_vec3(700, wh_test_uniform(-300, 300), 900);
     lesson.guess = wh_teach_guess_at(&drawn, -250, 60);
     lesson.guess.sd_beam = 1; /* the station's yaw moves the door */
+    lean(&lesson.guess.beam);
     const double yaw = wh_test_uniform(-0.2, 0.2) * RAD;
     wh_pose_t turn = turned(0, 0, 0);
     turn.R.m[0][0] = turn.R.m[1][1] = cos(yaw);
@@ -598,6 +606,7 @@ static double beyond(const lesson_t *lesson, const wh_teach_measurement_t *m, co
 static void carry(lesson_t *lesson, wh_teach_kind_t kind, double x, double y, double radius, double aside) {
     wh_teach_measurement_t m = {.kind = kind, .sd = 0.0015, .x = x, .y = y, .radius = radius};
     m.base_from_pick = gripper_at(lesson, 0, 0, 0, 0);
+    const double z = kind == WH_TEACH_PIN ? 5 : 40; /* a beam that leans is elsewhere at each height */
     const double half = sqrt(radius * radius - aside * aside);
     for (int i = 0; i < 4; ++i) {
         const double end = i % 2 ? half : -half;
@@ -605,7 +614,7 @@ static void carry(lesson_t *lesson, wh_teach_kind_t kind, double x, double y, do
         double outside_at = -250 - x - end * (1 + 4 / half);
         for (int k = 0; k < 60; ++k) {
             const double middle = (inside + outside_at) / 2;
-            const wh_pose_t gripper = gripper_at(lesson, middle, 60 - y + aside, 20, 0);
+            const wh_pose_t gripper = gripper_at(lesson, middle, 60 - y + aside, z, 0);
             if (beyond(lesson, &m, &gripper) < 0) {
                 inside = middle;
             } else {
@@ -613,7 +622,7 @@ static void carry(lesson_t *lesson, wh_teach_kind_t kind, double x, double y, do
             }
         }
         const double late = (lesson->late + 10e-6 * normal()) * (i < 2 ? 100 : -100);
-        m.base_from_gripper = gripper_at(lesson, inside + late, 60 - y + aside, 20, 0);
+        m.base_from_gripper = gripper_at(lesson, inside + late, 60 - y + aside, z, 0);
         lesson->list[lesson->count++] = m;
     }
 }

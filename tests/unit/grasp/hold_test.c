@@ -506,6 +506,30 @@ static void an_edge_grip_refuses_what_is_out_of_range(void **state) {
     assert_int_equal(wh_edge_at(&edge, &wafer, 0, &place), WH_OK);
 }
 
+/* Its depth, up to a fiftieth of the radius, and its opening; both ends belong to the range. */
+static void the_ends_of_a_notchs_ranges(void **state) {
+    (void)state;
+    static const struct {
+        double depth, degrees;
+        wh_status_t status;
+    } cases[] = {{1, 84.9, WH_STATUS_OUT_OF_RANGE},
+                 {1, 85, WH_OK},
+                 {1, 120, WH_OK},
+                 {1, 120.1, WH_STATUS_OUT_OF_RANGE},
+                 {0.19, 90, WH_STATUS_OUT_OF_RANGE},
+                 {0.2, 90, WH_OK},
+                 {3, 90, WH_OK},
+                 {3.01, 90, WH_STATUS_OUT_OF_RANGE}};
+    const wh_edge_t edge = wh_edge_default(150);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        wh_edge_wafer_t wafer = notch_at(0);
+        wafer.bottom = 0; /* any depth leaves it straight flanks */
+        wafer.depth = cases[i].depth;
+        wafer.opening = cases[i].degrees * WH_TEST_PI / 180;
+        assert_int_equal(wh_edge_wafer_validate(&edge, &wafer), cases[i].status);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_mass_of_silicon, set_up),
@@ -532,6 +556,7 @@ int main(void) {
         cmocka_unit_test(a_wafer_over_the_open_plunger_jams_there),
         cmocka_unit_test(a_miss_an_empty_blade_and_a_large_wafer_are_told_apart),
         cmocka_unit_test(an_edge_grip_refuses_what_is_out_of_range),
+        cmocka_unit_test(the_ends_of_a_notchs_ranges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
