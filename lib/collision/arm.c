@@ -65,13 +65,18 @@ void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_p
 
 /* ---------------------------------------------------------------------------------------- of any kind */
 
+/* A body that does not turn against another one, at a point of that one. */
+static void shift(const wh_pose_t *base_from_body, wh_real_t x, wh_real_t z, wh_pose_t *shifted) {
+    const wh_vec3_t point = wh_vec3(x, 0, z);
+    shifted->R = base_from_body->R;
+    shifted->r = wh_pose_point(base_from_body, &point);
+}
+
 /* The column's foot and its lift, in base. */
 static void place_column(const wh_chain_t *chain, const wh_real_t q[], wh_pose_t bodies[]) {
-    wh_pose_t foot = wh_pose_identity();
-    foot.r.x = q[WH_CHAIN_RAIL];
-    bodies[WH_ARM_BASE] = chain->is_placed ? wh_pose_compose(&chain->base_from_robot, &foot) : foot;
-    const wh_pose_t up = {wh_mat3_identity(), {0, 0, q[WH_CHAIN_Z]}};
-    bodies[WH_ARM_LIFT] = wh_pose_compose(&bodies[WH_ARM_BASE], &up);
+    const wh_pose_t origin = wh_pose_identity();
+    shift(chain->is_placed ? &chain->base_from_robot : &origin, q[WH_CHAIN_RAIL], 0, &bodies[WH_ARM_BASE]);
+    shift(&bodies[WH_ARM_BASE], 0, q[WH_CHAIN_Z], &bodies[WH_ARM_LIFT]);
 }
 
 /* Turns the plane of the links by Rx(tilt_x) Ry(tilt_y). */
@@ -135,6 +140,6 @@ void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, cons
         links[WH_ARM_FOREARM].r.z -= chain->height;
     }
     for (size_t i = WH_ARM_UPPER; i < WH_ARM_BODIES; ++i) {
-        bodies[i] = wh_pose_compose(&plane, &links[i]);
+        wh_pose_compose_to(&plane, &links[i], &bodies[i]);
     }
 }

@@ -133,7 +133,9 @@ static void lay_out(const wh_world_config_t *config, block_t *block) {
     wh_pose_t *shapes = take(block, config->wafer_count, sizeof *shapes);
     wh_mover_t *all = take(block, movers, sizeof *all);
     wh_mover_pair_t *pairs = take(block, movers * (movers - 1) / 2, sizeof *pairs);
-    double *due = take(block, movers * (movers - 1) / 2, sizeof *due);
+    const size_t blocks = wh_world_blocks(movers * (movers - 1) / 2);
+    double *due = take(block, blocks * WH_WORLD_BLOCK, sizeof *due);
+    double *soonest = take(block, blocks, sizeof *soonest);
     wh_pair_t *near = take(block, movers * WH_NEAR_CAPACITY, sizeof *near);
     if (world) {
         memset(world, 0, sizeof *world);
@@ -146,7 +148,8 @@ static void lay_out(const wh_world_config_t *config, block_t *block) {
         world->shapes = shapes;
         world->movers = all;
         world->pairs = pairs;
-        world->due = due;
+        world->due.of = due;
+        world->due.soonest = soonest;
         world->near = near;
     }
 }
@@ -185,6 +188,7 @@ static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t 
     mover->body = body;
     mover->kind = part == WH_NONE ? WH_PART_WAFER : world->config->parts[part].kind;
     mover->arm = arm;
+    world->bodies[body].has_parts = true;
     mover->near = &world->near[index * WH_NEAR_CAPACITY];
     mover->radius = wh_convex_radius(part == WH_NONE ? &world->config->wafer : wh_world_convex(world, part));
 }
@@ -215,6 +219,14 @@ static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mo
                                      &world->config->parts[b->part]));
 }
 
+/* So that each block is a whole one. */
+static void fill_last_block(wh_world_t *world) {
+    const size_t end = wh_world_blocks(world->pair_count) * WH_WORLD_BLOCK;
+    for (size_t i = world->pair_count; i < end; ++i) {
+        world->due.of[i] = (double)WH_WORLD_NOWHERE;
+    }
+}
+
 static void set_up_pairs(wh_world_t *world) {
     for (size_t a = 0; a < world->mover_count; ++a) {
         for (size_t b = a + 1; b < world->mover_count; ++b) {
@@ -230,6 +242,7 @@ static void set_up_pairs(wh_world_t *world) {
             }
         }
     }
+    fill_last_block(world);
 }
 
 wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,

@@ -84,7 +84,10 @@ static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
     }
     wh_world_weigh(world);
     for (size_t i = 0; more > 0 && i < world->pair_count; ++i) {
-        world->due[i] -= more;
+        world->due.of[i] -= more;
+    }
+    for (size_t block = 0; more > 0 && block < wh_world_blocks(world->pair_count); ++block) {
+        world->due.soonest[block] -= more; /* the least of them all the same */
     }
 }
 

@@ -21,6 +21,7 @@
 typedef struct {
     wh_pose_t before, now; /* base_from_body */
     bool has_gone;         /* it moves in this slice */
+    bool has_parts;        /* something hangs on it; of an arm's bodies only those are moved */
     wh_real_t way;         /* way of its origin, mm */
     wh_real_t turn;        /* turn about its origin, rad; an upper bound */
     wh_real_t lean;        /* the part of the turn that moves points 1 mm from the origin up or down, mm */
@@ -125,6 +126,13 @@ typedef struct {
     wh_gap_start_t points;
 } wh_start_t;
 
+/* Most pairs are not due in a slice: so many of them are passed over with one comparison. */
+#define WH_WORLD_BLOCK 16
+
+static inline size_t wh_world_blocks(size_t pairs) {
+    return (pairs + WH_WORLD_BLOCK - 1) / WH_WORLD_BLOCK;
+}
+
 /* Gaps are known better than to this, mm. A gap that is smaller by less than this is not a new minimum. */
 #define WH_SAME_GAP WH_REAL(1e-4)
 
@@ -140,6 +148,13 @@ typedef struct {
     wh_real_t least[WH_CLEARANCES];
     wh_real_t worth[WH_WORTHS]; /* a larger gap is no new `least` */
 } wh_world_gaps_t;
+
+/* The pairs of movers that must be judged. */
+typedef struct {
+    double *of; /* each pair: when `gone` has reached this value; WH_WORLD_NOWHERE: the last block's rest */
+    double *soonest; /* the least of each block */
+    double gone;     /* not less than the sum of the ways of any two movers, mm */
+} wh_world_due_t;
 
 struct wh_world {
     const wh_world_config_t *config;
@@ -157,8 +172,7 @@ struct wh_world {
     wh_mover_pair_t *pairs;
     size_t pair_count;
     wh_start_t starts[WH_WORLD_STARTS];
-    double *due; /* for each pair: it must be judged when `gone` has reached this value */
-    double gone; /* not less than the sum of the ways of any two movers, mm */
+    wh_world_due_t due;
     wh_pair_t *near;
     int32_t held[WH_WORLD_GRIPPERS];
     wh_left_t left[WH_WORLD_GRIPPERS];
@@ -217,7 +231,8 @@ static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pai
     pair->near.slack = is_there ? pair->near.slack : WH_WORLD_NOWHERE;
     pair->near.since = 0;
     pair->near.axis = wh_vec3(0, 0, 0);
-    world->due[pair - world->pairs] = 0;
+    const size_t index = (size_t)(pair - world->pairs);
+    world->due.of[index] = world->due.soonest[index / WH_WORLD_BLOCK] = 0;
 }
 
 /* Takes the result of wh_gap_measure, which was asked whether the gap is more than `enough`. */
@@ -285,8 +300,15 @@ void wh_world_move(const wh_look_t *look) WH_SYMBOL(wh_world_move);
 /* Call it after the pairs were judged: released wafers rest from now on. */
 void wh_world_settle(const wh_look_t *look) WH_SYMBOL(wh_world_settle);
 
-/* Makes the mover's list again if it has moved as far as the list is valid. */
-void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_near);
+/* Makes the mover's list of things at rest again. */
+void wh_world_list_anew(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_anew);
+
+/* Does so if it has moved as far as the list is valid. */
+static inline void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
+    if (!(mover->reach > 0)) {
+        wh_world_list_anew(world, mover);
+    }
+}
 
 /* Reports contact as undecided, because this mover has more near things than its list can hold. */
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a, size_t crowd)

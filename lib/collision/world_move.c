@@ -55,8 +55,17 @@ static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
     return wh_vec3_norm(&change);
 }
 
+/* wh_arm_is_at, which ends at the first number that differs: most bodies that are asked for move. */
+static bool is_at(const wh_pose_t *a, const wh_pose_t *b) {
+    bool same = a->r.x == b->r.x && a->r.y == b->r.y && a->r.z == b->r.z;
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = a->R.m[i / 3][i % 3] == b->R.m[i / 3][i % 3];
+    }
+    return same;
+}
+
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
-    const bool stands = wh_arm_is_at(&body->now, now);
+    const bool stands = is_at(&body->now, now);
     if (stands && !body->has_gone) {
         return;
     }
@@ -248,7 +257,9 @@ static void leave_behind(wh_world_t *world, size_t gripper) {
 void wh_world_move(const wh_look_t *look) {
     wh_world_t *world = look->world;
     for (size_t i = 0; i < WH_ARM_BODIES * wh_world_arms(world->config); ++i) {
-        move_body(&world->bodies[i], &look->input->base_from_arm[i]);
+        if (world->bodies[i].has_parts) {
+            move_body(&world->bodies[i], &look->input->base_from_arm[i]);
+        }
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         move_body(&world->bodies[wh_world_gripper_body(g)], &look->input->grippers[g].base_from_gripper);
@@ -264,7 +275,7 @@ void wh_world_move(const wh_look_t *look) {
         const wh_real_t motion = move_mover(world, &world->movers[i]);
         most = motion > most ? motion : most;
     }
-    world->gone = wh_world_add(world->gone, 2 * most);
+    world->due.gone = wh_world_add(world->due.gone, 2 * most);
 }
 
 void wh_world_jump(wh_world_t *world, const wh_world_input_t *input) {

@@ -118,12 +118,9 @@ static bool take_over(const wh_pair_t known[], size_t count, wh_pair_t *near) {
     return false;
 }
 
-void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
+void wh_world_list_anew(wh_world_t *world, wh_mover_t *mover) {
     int32_t found[WH_NEAR_CAPACITY];
     wh_pair_t known[WH_NEAR_CAPACITY];
-    if (mover->reach > 0) {
-        return;
-    }
     const wh_box_t box = box_before(world, mover);
     const size_t known_count = mover->near_count;
     for (size_t i = 0; i < known_count; ++i) {

@@ -98,14 +98,41 @@ static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     return (double)(wh_world_slack(pair, movers) - worth);
 }
 
+/* The least of a block, in halves: a processor compares several at once. */
+static double least_of(const double due[]) {
+    double least[WH_WORLD_BLOCK / 2];
+    for (size_t i = 0; i < WH_WORLD_BLOCK / 2; ++i) {
+        least[i] = due[i] < due[i + WH_WORLD_BLOCK / 2] ? due[i] : due[i + WH_WORLD_BLOCK / 2];
+    }
+    for (size_t half = WH_WORLD_BLOCK / 4; half > 0; half /= 2) {
+        for (size_t i = 0; i < half; ++i) {
+            least[i] = least[i] < least[i + half] ? least[i] : least[i + half];
+        }
+    }
+    return least[0];
+}
+
+/* Judges the pairs of a block that are due, the first of which has this number. */
+static void judge_block(const wh_look_t *look, size_t first, double due[]) {
+    const double gone = look->world->due.gone;
+    const size_t rest = look->world->pair_count - first;
+    const size_t count = rest < WH_WORLD_BLOCK ? rest : WH_WORLD_BLOCK;
+    for (size_t i = 0; i < count; ++i) {
+        if (!(gone < due[i])) {
+            const double next = gone + judge_pair(look, &look->world->pairs[first + i]) - EARLY;
+            due[i] = next > 0 ? next : 0; /* also if it is no number */
+        }
+    }
+}
+
 /* Most pairs are so far apart that they need no judgement for many slices. */
 static void judge_pairs(const wh_look_t *look) {
     const wh_world_t *world = look->world;
-    const double gone = world->gone;
-    for (size_t i = 0; i < world->pair_count; ++i) {
-        if (!(gone < world->due[i])) {
-            const double apart = judge_pair(look, &world->pairs[i]);
-            world->due[i] = gone + apart - EARLY;
+    for (size_t block = 0; block < wh_world_blocks(world->pair_count); ++block) {
+        if (!(world->due.gone < world->due.soonest[block])) {
+            double *const due = &world->due.of[block * WH_WORLD_BLOCK];
+            judge_block(look, block * WH_WORLD_BLOCK, due);
+            world->due.soonest[block] = least_of(due);
         }
     }
 }

@@ -2,25 +2,27 @@
 
 #include "doors.h"
 
-/* The places of everything; wafers and grippers are as the state has them. */
+/* The places of everything; wafers and grippers are as the state has them. `told` is that of
+ * wh_links_follow. */
 static wh_world_input_t input_of(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
-                                 const wh_state_t *state, wh_pose_t base_from_door[WH_DOORS]) {
+                                 const wh_gripper_input_t told[], const wh_state_t *state,
+                                 wh_pose_t base_from_door[WH_DOORS]) {
     const wh_layout_t *layout = collision->layout;
     wh_pose_t poses[WH_GRIPPERS];
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         poses[g] = state->grippers[g].base_from_gripper;
     }
-    wh_links_follow(&collision->links, layout, poses, axes, WH_LINKS_SAME);
+    wh_links_follow(&collision->links, layout, poses, axes, told, WH_LINKS_SAME);
     wh_layout_place_doors(layout, state->physics ? &state->physics->doors : NULL, axes, base_from_door);
     return (wh_world_input_t){slice, state->wafers, state->grippers, collision->links.bodies, base_from_door};
 }
 
 /* Called after a step. */
 static void look_at(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
-                    const wh_state_t *state, wh_event_list_t *list) {
+                    const wh_gripper_input_t told[], const wh_state_t *state, wh_event_list_t *list) {
     const wh_layout_t *layout = collision->layout;
     wh_pose_t base_from_door[WH_DOORS];
-    const wh_world_input_t input = input_of(collision, slice, axes, state, base_from_door);
+    const wh_world_input_t input = input_of(collision, slice, axes, told, state, base_from_door);
     if (collision->world) {
         wh_world_step(collision->world, &input, list);
     } else {
@@ -46,7 +48,8 @@ static void on_step(void *user, const wh_command_t *command, const wh_gripper_in
     const wh_collision_t *collision = user;
     const wh_state_t state = {
         .wafers = table->storage.wafers, .grippers = table->storage.grippers, .physics = collision->physics};
-    look_at(user, table->slice, axes_of(user, command), &state, list);
+    look_at(user, table->slice, axes_of(user, command), collision->is_told ? command->grippers : NULL, &state,
+            list);
 }
 
 static void on_placed(void *user, const wh_grasp_t *table, int32_t wafer) {
@@ -61,13 +64,13 @@ void wh_collision_observe(wh_collision_t *collision, const wh_real_t axes[], con
             place(collision, state->wafers, event->wafer);
         }
     }
-    look_at(collision, (uint64_t)state->seq, axes, state, NULL);
+    look_at(collision, (uint64_t)state->seq, axes, NULL, state, NULL);
 }
 
 void wh_collision_jump(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
                        const wh_state_t *state) {
     wh_pose_t base_from_door[WH_DOORS];
-    const wh_world_input_t input = input_of(collision, slice, axes, state, base_from_door);
+    const wh_world_input_t input = input_of(collision, slice, axes, NULL, state, base_from_door);
     if (collision->world) {
         wh_world_jump(collision->world, &input);
     }
@@ -83,6 +86,7 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
     collision->memory = memory;
     collision->world = NULL;
     collision->physics = &simulator->physics;
+    collision->is_told = false;
     wh_links_home(&collision->links, layout);
     simulator->observer = (wh_observer_t){on_step, on_placed, collision};
 }

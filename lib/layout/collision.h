@@ -12,6 +12,9 @@ typedef struct {
     wh_world_t *world; /* null before the first step */
     wh_links_t links;
     const wh_physics_state_t *physics; /* of the observed simulator */
+    /* wh_command_from_track makes all its commands, with the layout's machine: their poses are those of
+     * their axes. False after wh_collision_attach. */
+    bool is_told;
 } wh_collision_t;
 
 /* Bytes that wh_collision_attach needs. */

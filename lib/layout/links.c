@@ -8,9 +8,10 @@
 /* How far a point 1 mm from the end-effector's origin may be off, in mm for each mm of slack. */
 #define SLACK_PER_MM WH_REAL(0.01)
 
-/* The end-effector of the arm, by its first gripper. False, and nothing written, if there is none on it. */
-static bool find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t base_from_grippers[],
-                          wh_pose_t *base_from_effector) {
+/* The end-effector of the arm, by its first gripper, whose number is returned. WH_NONE, and nothing written,
+ * if there is none on it. */
+static int32_t find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t base_from_grippers[],
+                             wh_pose_t *base_from_effector) {
     const wh_machine_t *machine = &layout->machine;
     const bool is_in_list = arm > 0 && arm < WH_WORLD_ARMS;
     const int32_t robot = is_in_list ? layout->arms[arm].robot : 0;
@@ -27,9 +28,9 @@ static bool find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t
                 wh_pose_relative(&mount->effector_from_gripper, &identity);
             *base_from_effector = wh_pose_compose(&base_from_grippers[g], &gripper_from_effector);
         }
-        return true;
+        return (int32_t)g;
     }
-    return false;
+    return WH_NONE;
 }
 
 /* `known` is where the carrier has the end-effector at the arm's axes; null: not known. */
@@ -102,13 +103,23 @@ static bool is_at(const wh_pose_t *a, const wh_pose_t *b, wh_real_t slack) {
     return same;
 }
 
+/* Where the robot's axes have the end-effector: an unshifted gripper is there, too. */
+static void find_there(const wh_carrier_t *carrier, const wh_real_t own[], const wh_pose_t *told,
+                       wh_pose_t *there) {
+    if (told) {
+        *there = *told;
+    } else {
+        carrier->forward(carrier, own, there);
+    }
+}
+
 /* Sets the arm's axes. `own` are its robot's; null: not known. True if the arm is at these, and its
- * end-effector `there`. */
+ * end-effector `there`; `told` says where these bring it; null: not known. */
 static bool find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t own[],
-                      wh_real_t slack, wh_pose_t *there) {
+                      const wh_pose_t *told, wh_real_t slack, wh_pose_t *there) {
     const wh_pose_t *effector = &arm->base_from_effector;
     if (own) {
-        carrier->forward(carrier, own, there);
+        find_there(carrier, own, told, there);
         if (is_at(there, effector, slack)) {
             memcpy(arm->axes, own, carrier->axis_count * sizeof own[0]);
             return true;
@@ -126,8 +137,20 @@ static bool stands(const wh_links_arm_t *arm, const wh_pose_t *effector, const w
            wh_arm_is_at(effector, &arm->base_from_effector);
 }
 
+/* Places an arm's links, whose end-effector gripper `g` has told; WH_NONE: it has no gripper. */
+static void move_arm(wh_links_t *links, const wh_layout_t *layout, size_t i, int32_t g, const wh_real_t own[],
+                     const wh_gripper_input_t told[], wh_real_t slack) {
+    const wh_carrier_t *carrier = wh_layout_arm(layout, i, NULL);
+    const bool is_known = told && g != WH_NONE && !layout->machine.mounts[g].is_shifted;
+    const wh_pose_t *known = is_known ? &told[g].base_from_gripper : NULL;
+    wh_pose_t there;
+    const bool is_there =
+        g != WH_NONE && carrier && find_axes(&links->arms[i], carrier, own, known, slack, &there);
+    place(links, layout, i, is_there ? &there : NULL);
+}
+
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
-                     const wh_real_t axes[], wh_real_t slack) {
+                     const wh_real_t axes[], const wh_gripper_input_t told[], wh_real_t slack) {
     const size_t count = wh_layout_arms(layout);
     for (size_t i = 0; i < count; ++i) {
         wh_links_arm_t *arm = &links->arms[i];
@@ -135,13 +158,11 @@ void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose
         const wh_carrier_t *carrier = wh_layout_arm(layout, i, &first);
         const wh_real_t *own = axes ? &axes[first] : NULL;
         wh_pose_t effector = arm->base_from_effector;
-        const bool is_told = find_effector(layout, i, base_from_grippers, &effector);
+        const int32_t g = find_effector(layout, i, base_from_grippers, &effector);
         if (count > 1 && stands(arm, &effector, own, carrier->axis_count)) {
             continue;
         }
         arm->base_from_effector = effector;
-        wh_pose_t there;
-        const bool is_there = is_told && carrier && find_axes(arm, carrier, own, slack, &there);
-        place(links, layout, i, is_there ? &there : NULL);
+        move_arm(links, layout, i, g, own, told, slack);
     }
 }

@@ -38,9 +38,10 @@ void wh_links_at(wh_links_t *links, const wh_layout_t *layout, const wh_real_t a
  * robot follow from the end-effector. If a robot has a carrier and the command's axes bring the end-effector
  * there to `slack` mm, its links are at these axes. Otherwise they are at axes that do so, with rail, flip
  * and the elbow's side unchanged; if there are none, they stay. `axes`, in the machine's order, may be null:
- * not known. Cost: that of wh_arm_place_carrier for each arm; with several arms an arm that has not moved
- * costs next to nothing. */
+ * not known. `told`, which may be null too, are the poses of all grippers that wh_machine_update made of
+ * these axes with the layout's machine: they save the way from axes to end-effector. Cost: that of
+ * wh_arm_place_carrier for each arm; with several arms an arm that has not moved costs next to nothing. */
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
-                     const wh_real_t axes[], wh_real_t slack);
+                     const wh_real_t axes[], const wh_gripper_input_t told[], wh_real_t slack);
 
 #endif

@@ -368,7 +368,7 @@
 #define wh_world_judge WH_SYMBOL_RENAMED(wh_world_judge)
 #define wh_world_jump WH_SYMBOL_RENAMED(wh_world_jump)
 #define wh_world_keep_clearance WH_SYMBOL_RENAMED(wh_world_keep_clearance)
-#define wh_world_list_near WH_SYMBOL_RENAMED(wh_world_list_near)
+#define wh_world_list_anew WH_SYMBOL_RENAMED(wh_world_list_anew)
 #define wh_world_may_touch WH_SYMBOL_RENAMED(wh_world_may_touch)
 #define wh_world_most_of WH_SYMBOL_RENAMED(wh_world_most_of)
 #define wh_world_move WH_SYMBOL_RENAMED(wh_world_move)

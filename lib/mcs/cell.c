@@ -108,6 +108,7 @@ static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t
     if (real->collision) {
         wh_collision_attach(&local->collision, real, &local->simulator,
                             lua_memory(L, wh_collision_bytes(real)));
+        local->collision.is_told = !local->trial;
     }
     if (local->trial) {
         local->simulator.link.exchange = exchange_late;

@@ -149,6 +149,7 @@ static bool begin_ahead(ahead_t *ahead, const wh_state_t *state) {
         ahead->simulator.physics.doors = state->physics->doors;
     }
     wh_collision_attach(&ahead->collision, layout, &ahead->simulator, ahead->world_memory);
+    ahead->collision.is_told = true;
     return true;
 }
 

@@ -79,7 +79,7 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
     read_axes(signals, slice, axes);
     read_grippers(signals, slice, axes, poses);
     wh_links_at(&links, signals->layout, axes);
-    wh_links_follow(&links, signals->layout, poses, axes, NEAR_MM);
+    wh_links_follow(&links, signals->layout, poses, axes, NULL, NEAR_MM);
     const size_t count = wh_signals_link_bodies(signals->layout, bodies);
     for (size_t i = 0; i < count; ++i) {
         base_from_links[i] = links.bodies[bodies[i]];

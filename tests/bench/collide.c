@@ -138,7 +138,7 @@ static void on_slice(void *user, const wh_layout_t *layout, const double axes[],
         grippers[g] = state->grippers[g].base_from_gripper;
     }
     wh_links_home(&slice->links, layout);
-    wh_links_follow(&slice->links, layout, grippers, axes, WH_LINKS_SAME);
+    wh_links_follow(&slice->links, layout, grippers, axes, NULL, WH_LINKS_SAME);
     add_movers(run, slice);
     ++run->count;
 }

@@ -112,23 +112,52 @@ static void links_stand_on_their_robots(void **state) {
 }
 
 /* Followed from slice to slice, grippers have the very poses of the axes. If nothing moves nothing
- * is computed, with the same result. */
+ * is computed, with the same result, and so it is if the axes' poses are told. */
 static void links_follow_the_grippers(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(THREE);
-    wh_links_t followed, placed;
+    wh_links_t followed, placed, told;
     wh_real_t axes[WH_AXES];
     wh_pose_t poses[WH_GRIPPERS];
+    wh_gripper_input_t inputs[WH_GRIPPERS];
+    wh_machine_cache_t cache = {.is_taken = false};
     wh_machine_home(&layout->machine, axes);
     wh_links_home(&followed, layout);
+    wh_links_home(&told, layout);
     for (int step = 0; step < 40; ++step) {
         axes[first_of(layout, (size_t)step % 3) + WH_AXIS_THETA] += 0.03;
         axes[first_of(layout, 2) + layout->robots[2].carrier.axis_count - 1] += step % 2 == 0 ? 2 : 0;
         wh_machine_grippers(&layout->machine, axes, poses);
-        wh_links_follow(&followed, layout, poses, axes, WH_LINKS_SAME);
+        wh_links_follow(&followed, layout, poses, axes, NULL, WH_LINKS_SAME);
         wh_links_at(&placed, layout, axes);
         assert_memory_equal(followed.bodies, placed.bodies, sizeof placed.bodies);
+        wh_machine_update(&layout->machine, axes, &cache, inputs);
+        wh_links_follow(&told, layout, poses, axes, inputs, WH_LINKS_SAME);
+        assert_memory_equal(told.bodies, placed.bodies, sizeof placed.bodies);
     }
+}
+
+/* A gripper that a fault keeps elsewhere is not where the axes say, whether these poses are told or not. */
+static void links_follow_a_gripper_that_stays_behind(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(THREE);
+    wh_links_t followed, told;
+    wh_real_t axes[WH_AXES];
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_gripper_input_t inputs[WH_GRIPPERS];
+    wh_machine_cache_t cache = {.is_taken = false};
+    wh_machine_home(&layout->machine, axes);
+    wh_links_home(&followed, layout);
+    wh_links_home(&told, layout);
+    wh_machine_grippers(&layout->machine, axes, poses);
+    axes[first_of(layout, 0) + WH_AXIS_THETA] += 0.2;
+    wh_machine_update(&layout->machine, axes, &cache, inputs);
+    wh_links_follow(&followed, layout, poses, axes, NULL, WH_LINKS_SAME);
+    wh_links_follow(&told, layout, poses, axes, inputs, WH_LINKS_SAME);
+    assert_memory_equal(told.bodies, followed.bodies, sizeof told.bodies);
+    wh_links_home(&followed, layout);
+    const wh_vec3_t *hand = &followed.bodies[WH_ARM_HAND].r;
+    assert_at(&told.bodies[WH_ARM_HAND], hand->x, hand->y, hand->z);
 }
 
 /* -------------------------------------------------------------------------------------------------- contacts */
@@ -152,7 +181,7 @@ static const wh_event_t *first_hit(const wh_layout_t *layout, wh_real_t axes[], 
             grippers[g].wafer = WH_NONE;
             grippers[g].valve = WH_VALVE_CLOSED;
         }
-        wh_links_follow(&collision.links, layout, poses, axes, WH_LINKS_SAME);
+        wh_links_follow(&collision.links, layout, poses, axes, NULL, WH_LINKS_SAME);
         const wh_world_input_t input = {(uint64_t)step, layout->start, grippers, collision.links.bodies,
                                         NULL};
         if (world) {
@@ -236,6 +265,7 @@ int main(void) {
         cmocka_unit_test(each_robot_has_its_own_lengths),
         cmocka_unit_test(links_stand_on_their_robots),
         cmocka_unit_test(links_follow_the_grippers),
+        cmocka_unit_test(links_follow_a_gripper_that_stays_behind),
         cmocka_unit_test(robots_hit_each_other),
         cmocka_unit_test(two_arms_of_a_robot_are_clear),
         cmocka_unit_test(arms_one_above_the_other_touch),
