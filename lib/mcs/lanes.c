@@ -13,7 +13,7 @@
 /* ------------------------------------------------------------------------------------------------- slices */
 
 static void take_axes(wh_mcs_t *mcs, const wh_lane_t *lane) {
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
+    for (size_t axis = 0; axis < WH_AXES && lane->axes >> axis != 0; ++axis) {
         if ((lane->axes >> axis & 1U) != 0) {
             mcs->track.axes[axis] = lane->track.axes[axis];
         }
@@ -93,9 +93,9 @@ static void tell_recorder(wh_mcs_t *mcs) {
         const int32_t command = (int32_t)i == mcs->lanes->current ? recorder->running : lane->running;
         if (lane->is_busy || command != WH_NONE) {
             static const wh_task_t waiting = {.share = WH_SHARE_WAITING};
-            wh_task_t task = lane->is_busy && !wh_mcs_is_held_back(mcs, lane) ? lane->task : waiting;
-            wh_activity_narrow(&task, &mcs->layout->machine, lane->axes);
-            recorder->parts[recorder->part_count++] = (wh_recorder_part_t){command, task, lane->grippers};
+            const bool goes = lane->is_busy && !wh_mcs_is_held_back(mcs, lane);
+            recorder->parts[recorder->part_count++] =
+                (wh_recorder_part_t){command, goes ? lane->task : waiting, lane->grippers};
         }
     }
 }
@@ -361,6 +361,7 @@ static int start_segment(lua_State *L) {
     wh_mcs_check_segment(L, mcs, &planned.track.segment, lane->axes);
     lane->kept = wh_mcs_keep_segment(mcs, &lane->track, &planned, lane->axes);
     lane->task = planned.task;
+    wh_activity_narrow(&lane->task, &mcs->layout->machine, lane->axes);
     lane->awaited = planned.awaited;
     lane->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & lane->grippers & mcs->state.sensors};
     lane->is_busy = true;

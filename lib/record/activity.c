@@ -101,11 +101,14 @@ void wh_activity_narrow(wh_task_t *task, const wh_machine_t *machine, uint32_t a
     if (!task->robot || task->moves) {
         return;
     }
-    size_t own = 0;
-    for (size_t axis = 0; has_several(machine) && axis < wh_machine_robot_axes(machine); ++axis) {
-        if ((axes >> axis & 1U) != 0) {
-            task->robots[wh_machine_robot_of(machine, axis, &own)] = (uint8_t)(1 + task->share);
-        }
+    uint32_t own = axes; /* bit 0: the robot's first axis */
+    uint8_t *robot = task->robots;
+    for (const wh_carrier_t *carrier = has_several(machine) ? machine->carrier : NULL; carrier;
+         carrier = carrier->next) {
+        const bool is_its = (own & ((1U << carrier->axis_count) - 1)) != 0;
+        *robot = is_its ? (uint8_t)(1 + task->share) : *robot;
+        own >>= carrier->axis_count;
+        ++robot;
     }
     task->robot = (axes & wh_machine_robot_bits(machine)) != 0;
 }

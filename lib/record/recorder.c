@@ -90,6 +90,7 @@ const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, 
                                        ? wh_dropped_begin(record, recorder->layout, line, text, begin_s)
                                        : wh_record_add_command(record, line, text, begin_s);
     recorder->running = (int32_t)(command - record->commands);
+    recorder->joined.count = 0; /* it may have the place of one that is over */
     command->task = recorder->number;
     return command;
 }
@@ -156,9 +157,10 @@ static void join(wh_task_t *all, const wh_task_t *task) {
     }
 }
 
-/* If several commands run at once, each has one slice, with the share of its own segment. If the robot
- * stands still, its command gives the share; if no command has the robot, the first command does. */
-static void count_parts(wh_recorder_t *recorder, const wh_state_t *state) {
+/* Each command has the share of its own segment. If the robot stands still, its command gives the share of
+ * all; if no command has the robot, the first command does. */
+static void join_parts(wh_recorder_t *recorder, const wh_state_t *state) {
+    wh_recorder_joined_t *joined = &recorder->joined;
     const int32_t first = first_command(recorder);
     wh_task_t all = {.share = WH_SHARE_WAITING};
     for (size_t i = 0; i < recorder->part_count; ++i) {
@@ -166,11 +168,39 @@ static void count_parts(wh_recorder_t *recorder, const wh_state_t *state) {
         const bool tells = part->task.robot || (!all.robot && part->command == first && first != WH_NONE);
         all.share = tells ? part->task.share : all.share;
         join(&all, &part->task);
-        if (part->command != WH_NONE) {
-            ++recorder->record->commands[part->command].shares[wh_activity_share(&part->task, state)];
+        joined->shares[i] = (uint8_t)wh_activity_share(&part->task, state);
+    }
+    joined->all = all;
+    joined->count = recorder->part_count;
+    memcpy(joined->parts, recorder->parts, recorder->part_count * sizeof recorder->parts[0]);
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        joined->held[g] = state->grippers[g].wafer;
+    }
+}
+
+/* True if parts and wafers are those of the last slice. */
+static bool are_joined(const wh_recorder_t *recorder, const wh_state_t *state) {
+    const wh_recorder_joined_t *joined = &recorder->joined;
+    bool same = joined->count == recorder->part_count &&
+                memcmp(joined->parts, recorder->parts, joined->count * sizeof joined->parts[0]) == 0;
+    for (size_t g = 0; same && g < state->gripper_count; ++g) {
+        same = joined->held[g] == state->grippers[g].wafer;
+    }
+    return same;
+}
+
+/* If several commands run at once, each has one slice. */
+static void count_parts(wh_recorder_t *recorder, const wh_state_t *state) {
+    if (!are_joined(recorder, state)) {
+        join_parts(recorder, state);
+    }
+    for (size_t i = 0; i < recorder->part_count; ++i) {
+        const int32_t command = recorder->parts[i].command;
+        if (command != WH_NONE) {
+            ++recorder->record->commands[command].shares[recorder->joined.shares[i]];
         }
     }
-    recorder->task = all;
+    recorder->task = recorder->joined.all;
 }
 
 void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, const wh_state_t *state) {

@@ -19,6 +19,15 @@ typedef struct {
 /* For the script and its tasks. */
 #define WH_RECORDER_PARTS 65
 
+/* The sum of the last slice's parts: most slices have the parts and wafers of the one before. */
+typedef struct {
+    size_t count; /* 0: not known */
+    wh_recorder_part_t parts[WH_RECORDER_PARTS];
+    uint8_t shares[WH_RECORDER_PARTS]; /* that of each part's command */
+    int32_t held[WH_GRIPPERS];
+    wh_task_t all;
+} wh_recorder_joined_t;
+
 /* Set `layout` and `cell` once they are known, and `task` when a segment begins; only read the rest. */
 typedef struct {
     wh_record_t *record;
@@ -31,6 +40,7 @@ typedef struct {
     /* All commands that run at once, set again for each slice; if none, `running` and `task` are used. */
     wh_recorder_part_t parts[WH_RECORDER_PARTS];
     size_t part_count;
+    wh_recorder_joined_t joined;
 } wh_recorder_t;
 
 /* Begins a record of `script`, and keeps a copy of that text. `record` must be all zero and outlive the
