@@ -219,14 +219,15 @@ static int connect_cell(lua_State *L) {
     return 0;
 }
 
-/* native.parameters(function): the number of its parameters. */
+/* native.parameters(function): the number of its parameters, and true if it takes any number more. */
 static int count_parameters(lua_State *L) {
     lua_Debug function;
     luaL_checktype(L, 1, LUA_TFUNCTION);
     lua_settop(L, 1);
     (void)lua_getinfo(L, ">u", &function);
     lua_pushinteger(L, function.nparams);
-    return 1;
+    lua_pushboolean(L, function.isvararg);
+    return 2;
 }
 
 /* native.outside(text): a message without a place in a file of lua/mcs. */

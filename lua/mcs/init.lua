@@ -27,7 +27,6 @@ return function(native)
   local lookup, alarms, reach = parts.lookup, parts.alarms, parts.reach
   local commands, queries = parts.commands, parts.queries
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
-  local words = native.module("mcs/words.lua")
   local flows = native.module("mcs/flow.lua")(native, parts.tasks, parts.commands, lookup, parts.slot_map,
     native.module("mcs/flow_ports.lua")(native, parts.tasks, parts.commands, parts.ports, parts.slot_map))
 
@@ -75,18 +74,17 @@ return function(native)
     error(type(problem) == "string" and native.outside(problem) or problem, 0)
   end
 
+  local actions = {}
+
   -- Makes the word for scripts: it refuses arguments that the action does not use.
   local function word(name, action)
-    local known = words.scripts[name]
-    local most = known and #known.takes
-    if not known or not known.any and native.parameters(action) ~= most then
-      error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
-    end
+    local most, any = native.parameters(action)
+    actions[name] = action
     return function(...)
       parts.own.refuse(name)
       native.begin_word(name)
       flows.refuse(name)
-      for place = known.any and math.maxinteger or most + 1, select("#", ...) do
+      for place = any and math.maxinteger or most + 1, select("#", ...) do
         local extra = select(place, ...)
         if extra ~= nil then
           local text = "%s: %s is one argument too many (expected at most %d)"
@@ -106,10 +104,25 @@ return function(native)
     end
   end
 
+  -- The words as lua/mcs/words.lua describes them: each action must take that.
+  local words
+
+  local function described()
+    words = words or native.module("mcs/words.lua")
+    for name, action in pairs(actions) do
+      local known = words.scripts[name]
+      local most, any = native.parameters(action)
+      if not known or any ~= (known.any or false) or not any and most ~= #known.takes then
+        error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
+      end
+    end
+    return words
+  end
+
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)
     local index, words_of_it = lookup.robot(name), {}
-    for _, known in ipairs(words.scripts) do
+    for _, known in ipairs(described().scripts) do
       local bound = known[1]
       local action = known.bound and _G[bound]
       words_of_it[bound] = action and function(self, ...)
@@ -161,7 +174,7 @@ return function(native)
   end
 
   local function define()
-    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words, wh)()
+    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, described(), wh)()
   end
 
   return open_prompt, survey, define, parts.finish

@@ -1,5 +1,6 @@
--- The words of scripts: their parameters, results and meaning. lua/mcs/init.lua makes only these words,
--- and refuses arguments without a parameter; lua/mcs/definitions.lua writes them for editors.
+-- The words of scripts: their parameters, results and meaning. lua/mcs/init.lua makes only these words, and
+-- checks that they take what is said here; lua/mcs/definitions.lua writes them for editors. A run reads this
+-- file only if it has several robots, so no global is used here: a script may have set it.
 --
 -- takes    { name, type, what it is } of each parameter in order; a type ends in ? if it may be left out
 -- gives    { type, name } of each result in order
@@ -159,8 +160,8 @@ words.scripts = {
              does = "Marks where a cycle begins, for wafers per hour." },
 }
 
-for _, word in ipairs(words.scripts) do
-  words.scripts[word[1]] = word
+for i = 1, #words.scripts do
+  words.scripts[words.scripts[i][1]] = words.scripts[i]
 end
 
 -- The module wh, see lib/script/wh_module.h.
