@@ -1,6 +1,7 @@
 /* Figures without a peer in C: how much faster than real time the program plays the transfer run and a
- * tool, the cost of its log's other readers beside a replay, the instructions of a step, as callgrind counts
- * them, the time of a scan's estimate; and a flow of 10,000 wafers, also against SimPy.
+ * tool, what a run costs from start to end, studies and pages, the cost of its log's other readers beside a
+ * replay, the instructions of a step, as callgrind counts them, the time of a scan's estimate; and a flow of
+ * 10,000 wafers, also against SimPy.
  * Start it at the root, after `make all tests`. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@ enum { RUNS = 41, FEW_RUNS = 5 };
 
 #define LOG "build/tests/bench/tool.log"
 #define PAGE "build/tests/bench/week.html"
+#define TOOL_PAGE "build/tests/bench/tool.html"
 #define LOOP "tests/bench/loop.lua --counted --brief --set commands="
 
 /* The first number after `key` in a command's output; the command's own complaints are shown.
@@ -185,6 +187,20 @@ static void count_each(const char *row, const char *run, int few, int many, doub
     bench_figure(row, "instructions", &spread, true, goal);
 }
 
+/* The instructions of a whole run. */
+static void count_whole(const char *row, const char *run, double goal) {
+    if (!bench_wanted(row)) {
+        return;
+    }
+    if (system("command -v valgrind >/dev/null") != 0) {
+        bench_note("SKIPPED instructions: no valgrind");
+        return;
+    }
+    double count = count_run(run);
+    const bench_spread_t spread = bench_spread(&count, 1);
+    bench_figure(row, "instructions", &spread, true, goal);
+}
+
 #define FLOW "build/waferhand run tests/bench/flow.lua --set wafers=10000"
 #define SIMPY "PYTHONPATH=build/pypi python3 tests/bench/peer_simpy.py 10000"
 
@@ -196,6 +212,22 @@ static void time_run_of(const char *row, const char *command, double goal) {
     }
     for (size_t i = 0; i < FEW_RUNS; ++i) {
         times[i] = cost_of(command);
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "s", &spread, true, goal);
+}
+
+/* A page's cost beside its run: the signals over time are recorded for it, and it is written. */
+static void time_page(const char *row, const char *run, double goal) {
+    double times[FEW_RUNS];
+    char line[200];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    (void)snprintf(line, sizeof line, "%s --report " TOOL_PAGE, run);
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        const double whole = cost_of(line);
+        times[i] = whole - cost_of(run);
     }
     const bench_spread_t spread = bench_spread(times, FEW_RUNS);
     bench_figure(row, "s", &spread, true, goal);
@@ -246,14 +278,23 @@ int main(int argc, char **argv) {
     bench_note(
         "`waferhand run` on the transfer run and on the tool of example 27 with 1 ms slices, by its own "
         "clock; a long series, counted; a log read; a step counted by callgrind");
-    time_run("run, real time", "01_transfer", RUNS, 5000);
-    /* Two robots; collisions between all parts and the smallest gaps are checked. */
-    time_run("tool, real time", "27_tool", FEW_RUNS, 300);
+    time_run("run, real time", "01_transfer", RUNS, 10000);
+    /* One robot, and two; collisions between all parts and the smallest gaps are checked. */
+    time_run("efem, real time", "35_efem_flow", FEW_RUNS, 1500);
+    time_run("tool, real time", "27_tool", FEW_RUNS, 400);
     /* Collisions, doors, pumps, cleans, vacuum that builds up, wafers that settle and may slip. */
-    time_by_processor("three robots, collisions", "tests/bench/three_robots.lua", 150);
+    time_by_processor("three robots, collisions", "tests/bench/three_robots.lua", 300);
     time_by_processor("three robots, look ahead", "tests/bench/three_robots.lua --set wafers=2 --set ahead=1",
                       0);
     count_each("three robots, a wafer", "tests/bench/three_robots.lua --brief --set wafers=", 2, 4, 0);
+    count_whole("tool, instructions", "lua/examples/27_tool.lua", 7e9);
+    time_run_of("run, start to end", "build/waferhand run lua/examples/01_transfer.lua >/dev/null", 0.01);
+    count_whole("run, start to end", "lua/examples/01_transfer.lua", 55e6);
+    time_page("tool, its page", "build/waferhand run lua/examples/27_tool.lua >/dev/null", 0.3);
+    time_run_of("study, 10,000 trials",
+                "build/waferhand study lua/examples/07_study.lua --trials 10000 >/dev/null", 0.9);
+    time_run_of("study, 100 with collisions",
+                "build/waferhand study tests/bench/study_efem.lua --trials 100 >/dev/null", 2);
     time_counted("counted, a long series",
                  "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null", 5);
     time_counted("counted, passive pads",
