@@ -15,7 +15,7 @@ CMAKE := $(LIBDIR)/cmake/waferhand/waferhand-config
 LIBRARY_PLACES := $(LIBDIR)/libwaferhand.a $(SHARED_LIBRARY) $(LIBDIR)/waferhand/interface.json $(LIBDIR)/pkgconfig/waferhand.pc $(CMAKE).cmake $(CMAKE)-version.cmake
 LIBRARY_HEADERS := lib/waferhand.h $(call public,$(LIBRARY_ROOMS))
 SHARED_COLLISION := $(if $(SHARED),$(LIBDIR)/libwaferhand_collision.so.$(ABI))
-COLLISION_PLACES := $(LIBDIR)/libwaferhand_collision.a $(SHARED_COLLISION) $(LIBDIR)/pkgconfig/waferhand_collision.pc
+COLLISION_PLACES := $(LIBDIR)/libwaferhand_collision.a $(SHARED_COLLISION) $(LIBDIR)/waferhand/interface_collision.json $(LIBDIR)/pkgconfig/waferhand_collision.pc
 COLLISION_HEADERS := lib/waferhand_collision.h $(call public,$(COLLISION_ROOM))
 PROGRAM_PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/lua/5.4/wh.so $(PREFIX)/share/man/man1/waferhand.1 \
                   $(if $(RANKS),$(LIBDIR)/waferhand/waferhand_mpi.so)
@@ -24,9 +24,10 @@ SHARE := $(PREFIX)/share/waferhand
 DOCUMENTS := $(PREFIX)/share/doc/waferhand
 EXAMPLES := $(filter lua/layouts/% lua/examples/% lua/patterns/% lua/dialects/% lua/schedules/%,$(LUA_SOURCES)) \
             $(wildcard lua/schedules/*.csv)
-# The manuals as they stand in the tree, so that the links between them lead somewhere. Other programs are generated from the messages.
+# The manuals as they stand in the tree, so that the links between them lead somewhere. Other programs are generated from the messages;
+# a controller's board compiles board.c.
 MANUALS := README.md LICENSE $(wildcard lib/*.md lib/manual/*.md lib/*/README.md lua/*.md lua/manual/* lua/dialects/*.md \
-           lcm_types/*.md lcm_types/*.lcm tests/README.md lib/*/*.png lib/*/*/*.png lua/layouts/*.svg)
+           lcm_types/*.md lcm_types/*.lcm tests/README.md lib/loop/board.[ch] lib/*/*.png lib/*/*/*.png lua/layouts/*.svg)
 
 # $(call place,FILE,PLACE): a step of a chain of commands that stops at the first failure
 place = install -D -m $(if $(filter %/bin/waferhand,$(2)),755,644) $(1) '$(DESTDIR)$(2)' &&
