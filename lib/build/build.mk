@@ -242,18 +242,22 @@ $(B)/libwaferhand_lcm.a: $(MESSAGE_OBJECTS) $(B)/messages
 # The interface for callers that are not C: sizes and offsets as JSON, and a symbol for each inline function. Nothing runs, so a
 # cross compiler does.
 INTERFACE_FLAGS = $(filter-out -DWH_BUILDING_LIBRARY,$(LIBRARY_FLAGS)) -w $(CPPFLAGS) $(CFLAGS) $(EXTRA) $(if $(GNU),-fno-lto)
-INTERFACE = $(CC) $(INTERFACE_FLAGS) -Ilib -E lib/build/interface.c | awk -v version=$(VERSION) -v real=$(if $(filter -DWH_FLOAT%,$(DEFINES)),float,double) \
-    -f lib/build/interface.awk
-$(B)/interface.json: lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
+INTERFACE = $(CC) $(INTERFACE_FLAGS) $(ALSO:%=-DWH_INTERFACE_COLLISION) -Ilib -E lib/build/interface.c | awk -v version=$(VERSION) \
+    -v real=$(if $(filter -DWH_FLOAT%,$(DEFINES)),float,double) $(ALSO:%=-v also=%) -f lib/build/interface.awk
+INTERFACES := $(B)/interface.json $(B)/interface_collision.json
+INLINE_FUNCTIONS := $(B)/inline_functions.c $(B)/inline_functions_collision.c
+# Collision's is the whole of both: its structs have the library's. Its shared library has symbols of its own headers alone.
+$(filter %_collision.json,$(INTERFACES)) $(filter %_collision.c,$(INLINE_FUNCTIONS)): ALSO := waferhand_collision.h
+$(INTERFACES): $(B)/%.json: lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
 	@mkdir -p $(@D)
 	@echo "  JSON $@"
-	$(Q)$(INTERFACE) -v make=json >$(B)/interface.c
-	$(Q)$(CC) $(INTERFACE_FLAGS) -Ilib -c -o $(B)/interface.o $(B)/interface.c
-	$(Q)LC_ALL=C sed -n '/^@begin$$/,/^@end$$/ { /^@/d; s/: \( *\)\(-*\) *\([0-9]\)/: \2\3/g; p }' $(B)/interface.o >$@ && test -s $@
-$(B)/inline_functions.c: lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
+	$(Q)$(INTERFACE) -v make=json >$(B)/$*.c
+	$(Q)$(CC) $(INTERFACE_FLAGS) -Ilib -c -o $(B)/$*.o $(B)/$*.c
+	$(Q)LC_ALL=C sed -n '/^@begin$$/,/^@end$$/ { /^@/d; s/: \( *\)\(-*\) *\([0-9]\)/: \2\3/g; p }' $(B)/$*.o >$@ && test -s $@
+$(INLINE_FUNCTIONS): lib/build/interface.awk lib/build/interface.c $(HEADERS) $(B)/flags
 	@mkdir -p $(@D)
-	$(Q)$(INTERFACE) -v make=inline >$@ && grep -q wh_symbol_of_ $@
-$(B)/pic/inline_functions.o: $(B)/inline_functions.c
+	$(Q)$(INTERFACE) $(if $(ALSO),-v room=$(COLLISION_ROOM)) -v make=inline >$@ && grep -q wh_symbol_of_ $@
+$(INLINE_FUNCTIONS:$(B)/%.c=$(B)/pic/%.o): $(B)/pic/%.o: $(B)/%.c
 	@mkdir -p $(@D)
 	@echo "  PIC  $<"
 	$(Q)$(CCACHE) $(CC) $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden -Ilib $(CPPFLAGS) $(CFLAGS) $(EXTRA) -c -o $@ $<
@@ -265,9 +269,9 @@ $(B)/libwaferhand.so.$(ABI): $(MODULE_SUPPORT) $(B)/pic/inline_functions.o $(B)/
 	$(LINK) -shared -Wl,-soname,libwaferhand.so.$(ABI),-z,defs,--as-needed -o $@ $(MODULE_SUPPORT) $(B)/pic/inline_functions.o -lm
 	@ln -sf $(@F) $(@D)/libwaferhand.so
 # It uses the library's own shared one, so a program has each function once.
-$(B)/libwaferhand_collision.so.$(ABI): $(COLLISION_SUPPORT) $(B)/libwaferhand.so.$(ABI) $(B)/sources
+$(B)/libwaferhand_collision.so.$(ABI): $(COLLISION_SUPPORT) $(B)/pic/inline_functions_collision.o $(B)/libwaferhand.so.$(ABI) $(B)/sources
 	@echo "  LD   $@"
-	$(LINK) -shared -Wl,-soname,libwaferhand_collision.so.$(ABI),-z,defs,--as-needed -o $@ $(COLLISION_SUPPORT) \
+	$(LINK) -shared -Wl,-soname,libwaferhand_collision.so.$(ABI),-z,defs,--as-needed -o $@ $(COLLISION_SUPPORT) $(B)/pic/inline_functions_collision.o \
 	    $(B)/libwaferhand.so.$(ABI) $(shell $(PKG_CONFIG) --libs-only-L --libs-only-l ccd) -lm
 	@ln -sf $(@F) $(@D)/libwaferhand_collision.so
 $(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources

@@ -2,7 +2,8 @@
 #   make=json     it holds the interface as JSON, as characters: sizes and offsets are whatever the compiler takes for them, so
 #                 nothing has to run, and another processor's compiler gives that one's. lib/build/install.mk takes the text out.
 #   make=inline   it gives each inline function a symbol of its own, for callers that are not C
-# A line of the input that begins with # is a mark of the preprocessor.
+# With also=HEADER it includes that header as well; with room=NAME only what that room's headers declare is taken.
+# A line of the input that begins with # is a mark of the preprocessor: it names the file of the lines behind it.
 
 function trim(text) {
     gsub(/[ \t\n]+/, " ", text)
@@ -219,7 +220,12 @@ function take(statement) {
         functions[++function_count] = statement
 }
 
-/^[ \t]*#/ { next }
+/^[ \t]*#/ {
+    if (match($0, /"[^"]*"/))
+        is_apart = room != "" && substr($0, RSTART + 1, RLENGTH - 2) !~ ("(^|/)" room "/[a-z_]+\\.h$")
+    next
+}
+is_apart { next }
 {
     text = text " " $0
     while (match(text, /[{};]/)) {
@@ -253,10 +259,12 @@ function put_types(wanted,    i, first) {
         }
 }
 END {
-    macros = "WH_OK,WH_NONE,WH_AXES,WH_GRIPPERS,WH_EVENTS_PER_GRIPPER,WH_EVENT_KINDS,WH_EVENT_TEXT_SIZE,WH_SLICE_EVENTS,WH_FAULTS,WH_COMMAND_FAULTS,WH_DOORS"
+    macros = (also ? "WH_CONVEX_POINTS,WH_WORLD_GRIPPERS,WH_WORLD_ARMS,WH_WORLD_NO_ARM,WH_WORLD_DOORS,WH_WORLD_MOVING,WH_CURVE_BINS," : "") "WH_OK,WH_NONE,WH_AXES,WH_GRIPPERS,WH_EVENTS_PER_GRIPPER,WH_EVENT_KINDS,WH_EVENT_TEXT_SIZE,WH_SLICE_EVENTS,WH_FAULTS,WH_COMMAND_FAULTS,WH_DOORS"
     print "/* Written by lib/build/interface.awk. */"
     print "#include <stddef.h>"
     print "#include \"waferhand.h\""
+    if (also)
+        print "#include \"" also "\""
     print "#if defined(__GNUC__)\n#pragma GCC visibility push(default)\n#endif"
     if (make == "inline") {
         for (i = 1; i <= inline_count; ++i)
