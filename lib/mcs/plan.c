@@ -10,6 +10,7 @@
 #include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
+#include "../text/clock.h"
 #include "carrying.h"
 #include "native.h"
 #include "playing.h"
@@ -320,7 +321,11 @@ static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_track_t *track) {
         return;
     }
     const wh_ahead_start_t start = {&mcs->state, others, is_first ? find_others(mcs, others) : 0};
-    if (rehearsal->look_ahead(rehearsal->look_ahead_user, track, is_first ? &start : NULL, &slices, reason)) {
+    const double begin = wh_clock_seconds();
+    const bool collides =
+        rehearsal->look_ahead(rehearsal->look_ahead_user, track, is_first ? &start : NULL, &slices, reason);
+    mcs->recorder.record->wall_s += wh_clock_seconds() - begin;
+    if (collides) {
         if (!track) { /* no request is the cause */
             wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
         }

@@ -286,7 +286,7 @@ int main(int argc, char **argv) {
     time_by_processor("three robots, collisions", "tests/bench/three_robots.lua", 300);
     time_by_processor("three robots, look ahead", "tests/bench/three_robots.lua --set wafers=2 --set ahead=1",
                       0);
-    count_each("three robots, a wafer", "tests/bench/three_robots.lua --brief --set wafers=", 2, 4, 0);
+    count_each("three robots, a wafer", "tests/bench/three_robots.lua --brief --set wafers=", 2, 4, 1.1e9);
     count_whole("tool, instructions", "lua/examples/27_tool.lua", 7e9);
     time_run_of("run, start to end", "build/waferhand run lua/examples/01_transfer.lua >/dev/null", 0.01);
     count_whole("run, start to end", "lua/examples/01_transfer.lua", 55e6);
