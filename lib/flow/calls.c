@@ -44,12 +44,10 @@ bool wh_flow_is_for_ends(const wh_flow_state_t *state, int32_t station) {
     return of->has_carriers && !of->is_real_port && !is_to_call(state, station);
 }
 
-bool wh_flow_is_port_shut(const wh_flow_state_t *state, int32_t station) {
+bool wh_flow_is_without_carrier(const wh_flow_state_t *state, int32_t station) {
     const wh_flow_station_t *of = &state->tool->stations[station];
     const wh_flow_station_state_t *at = &state->stations[station];
-    if (!of->has_carriers) {
-        return false;
-    } else if (at->call > 0) {
+    if (at->call > 0) {
         return at->real.is_port_shut || state->calls.of[at->call - 1].phase != WH_FLOW_CALL_THERE;
     }
     return of->is_real_port ? at->real.is_port_shut

@@ -11,8 +11,13 @@
 
 #include "state.h"
 
-/* True if no blade may enter the station because no open carrier stands there. */
-bool wh_flow_is_port_shut(const wh_flow_state_t *state, int32_t station);
+/* True if no blade may enter the station because no open carrier stands there. The first one is asked of those
+ * with carriers alone. */
+bool wh_flow_is_without_carrier(const wh_flow_state_t *state, int32_t station);
+
+static inline bool wh_flow_is_port_shut(const wh_flow_state_t *state, int32_t station) {
+    return state->tool->stations[station].has_carriers && wh_flow_is_without_carrier(state, station);
+}
 
 /* True for a timed port at which no lot begins: wafers end there, in one carrier after the other. */
 bool wh_flow_is_for_ends(const wh_flow_state_t *state, int32_t station);

@@ -41,19 +41,30 @@ static void pass_on(void *context, const wh_flow_state_t *state, int64_t to_us) 
 
 /* ----------------------------------------------------------------------------------------------- instants */
 
+static void end_robots(wh_flow_state_t *state) {
+    wh_flow_robot_state_t *const robots = state->robots;
+    const int32_t count = (int32_t)state->tool->robot_count;
+    const int64_t now_us = state->now_us;
+    for (int32_t r = 0; r < count; ++r) {
+        if (robots[r].is_ended || robots[r].until_us == now_us) {
+            robots[r].is_ended = false;
+            wh_flow_robot_end(state, r);
+        }
+    }
+}
+
 static void end_all(wh_flow_state_t *state) {
-    wh_flow_take_holds(state);
+    if (state->outside) {
+        wh_flow_take_holds(state);
+    }
     wh_flow_stations_end(state);
     if (state->outside) {
         state->outside->hear(state->outside->context, state);
     }
-    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
-        if (state->robots[r].is_ended || state->robots[r].until_us == state->now_us) {
-            state->robots[r].is_ended = false;
-            wh_flow_robot_end(state, r);
-        }
+    end_robots(state);
+    if (state->outside || state->next.down > 0) {
+        wh_flow_end_holds(state);
     }
-    wh_flow_end_holds(state);
     if (state->outside) {
         wh_flow_end_told(state);
         state->outside->look(state->outside->context, state);
@@ -70,36 +81,50 @@ static bool begin_order(wh_flow_state_t *state, int32_t robot, const wh_flow_ord
     return begun;
 }
 
+/* True if it waits for a station that has not changed since it was asked. What somebody else plays, where
+ * carriers come and where stations have failed, more may have. */
+static bool is_kept_out(const wh_flow_state_t *state, const wh_flow_kept_out_t *kept_out) {
+    return kept_out->station != WH_FLOW_NONE &&
+           state->stations[kept_out->station].changes == kept_out->changes && !state->outside &&
+           !state->calls.are_there && state->failures.stations == 0;
+}
+
+static bool is_free(const wh_flow_state_t *state, const wh_flow_robot_state_t *robot) {
+    return (robot->action == WH_FLOW_IDLE || robot->action == WH_FLOW_WAITING) &&
+           robot->held_us <= state->now_us && !is_kept_out(state, &robot->kept_out);
+}
+
 /* A free robot is asked, one in front of its place places. True if something began. */
 static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                         uint64_t *asked) {
-    if (state->robots[robot].held_us > state->now_us) {
+    wh_flow_robot_state_t *at = &state->robots[robot];
+    if (!is_free(state, at)) {
         return false;
     }
-    if (state->robots[robot].action == WH_FLOW_WAITING) {
+    if (at->action == WH_FLOW_WAITING) {
         return wh_flow_robot_place(state, robot);
     }
-    if (state->robots[robot].action != WH_FLOW_IDLE) {
-        return false;
-    }
-    wh_flow_order_t order;
-    const bool has_wish = wh_flow_ask(state, rules, robot, &order);
+    at->has_wish = wh_flow_ask(state, rules, robot, &at->wish);
     ++*asked;
-    state->robots[robot].has_wish = has_wish;
-    if (!has_wish) {
-        return false;
-    }
-    state->robots[robot].wish = order;
-    return begin_order(state, robot, &order);
+    return at->has_wish && begin_order(state, robot, &at->wish);
 }
 
 static bool is_any_over(const wh_flow_state_t *state) {
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        if (state->robots[r].until_us == state->now_us) {
-            return true;
-        }
+    const wh_flow_robot_state_t *robot = state->robots, *const behind = robot + state->tool->robot_count;
+    while (robot < behind && robot->until_us != state->now_us) {
+        ++robot;
     }
-    return false;
+    return robot < behind;
+}
+
+/* Asks all robots in their order. True if something began. */
+static bool begin_robots(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+    const int32_t count = (int32_t)state->tool->robot_count;
+    bool begun = false;
+    for (int32_t r = 0; r < count && !state->cause; ++r) {
+        begun = (is_free(state, &state->robots[r]) && begin_robot(state, rules, r, asked)) || begun;
+    }
+    return begun;
 }
 
 /* One instant: all that ends, then what stations begin, then robots, until nobody begins anything; once
@@ -112,24 +137,21 @@ static void play_instant(wh_flow_state_t *state, const wh_flow_rules_t *rules, u
         }
         end_all(state);
         wh_flow_stations_begin(state);
-        bool begun = true;
-        while (begun && !state->cause) {
-            begun = false;
-            for (int32_t r = 0; r < (int32_t)state->tool->robot_count && !state->cause; ++r) {
-                begun = begin_robot(state, rules, r, asked) || begun;
-            }
+        while (!state->cause && begin_robots(state, rules, asked)) {
         }
         wh_flow_locks_turn_for_kept(state);
     } while (is_any_over(state) && !state->cause);
 }
 
-static int64_t next_instant(const wh_flow_state_t *state) {
+static int64_t next_instant(wh_flow_state_t *state) {
+    const wh_flow_robot_state_t *robot = state->robots, *const behind = robot + state->tool->robot_count;
+    const int64_t now_us = state->now_us;
     int64_t idle_us = WH_FLOW_NEVER;
     int64_t next_us = wh_flow_stations_next(state, &idle_us);
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        const int64_t until_us = state->robots[r].until_us, held_us = state->robots[r].held_us;
-        next_us = until_us > state->now_us && until_us < next_us ? until_us : next_us;
-        next_us = held_us > state->now_us && held_us < next_us ? held_us : next_us;
+    for (; robot < behind; ++robot) {
+        const int64_t until_us = robot->until_us, held_us = robot->held_us;
+        next_us = until_us > now_us && until_us < next_us ? until_us : next_us;
+        next_us = held_us > now_us && held_us < next_us ? held_us : next_us;
     }
     const int64_t list_us = wh_flow_list_next(state);
     next_us = list_us < next_us ? list_us : next_us;

@@ -18,12 +18,9 @@ static bool is_of_step(const wh_flow_state_t *state, int32_t wafer, int32_t step
            wh_flow_step_has(wh_flow_step_of(state->plan, wafer, step), state->tool->place_stations[place]);
 }
 
-int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place) {
+int32_t wh_flow_following_open(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place) {
     const int32_t last = wh_flow_last_step(state->plan, wafer);
     bool is_out = false;
-    if (state->failures.stations == 0) {
-        return step < last ? step + 1 : WH_FLOW_NONE;
-    }
     for (int32_t next = step + 1; next <= last; ++next) {
         const bool has_failed = wh_flow_step_has_failed(state, wh_flow_step_of(state->plan, wafer, next));
         if (!has_failed && !(is_out && is_of_step(state, wafer, next, place))) {
@@ -32,11 +29,6 @@ int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t s
         is_out = is_out || has_failed;
     }
     return WH_FLOW_NONE;
-}
-
-int32_t wh_flow_next_step(const wh_flow_state_t *state, int32_t wafer) {
-    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    return at->toward != WH_FLOW_NONE ? at->toward : wh_flow_following(state, wafer, at->step, at->place);
 }
 
 static void uncount(wh_flow_state_t *state, int32_t wafer) {

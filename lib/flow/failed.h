@@ -16,12 +16,23 @@ static inline bool wh_flow_has_failed(const wh_flow_state_t *state, int32_t stat
 /* True if all stations of the step have failed. */
 bool wh_flow_step_has_failed(const wh_flow_state_t *state, const wh_flow_step_t *step);
 
-/* The step behind this one for a wafer that lies in `place` (or WH_FLOW_NONE); WH_FLOW_NONE: its route ends
+/* The step behind this one that has not failed, for a wafer that lies in `place` (or WH_FLOW_NONE); WH_FLOW_NONE: its route ends
  * there. */
-int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place);
+int32_t wh_flow_following_open(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place);
+
+static inline int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t step,
+                                        int32_t place) {
+    if (state->failures.stations > 0) {
+        return wh_flow_following_open(state, wafer, step, place);
+    }
+    return step < wh_flow_last_step(state->plan, wafer) ? step + 1 : WH_FLOW_NONE;
+}
 
 /* The step to which the wafer goes, or has begun to go; WH_FLOW_NONE: none is left. */
-int32_t wh_flow_next_step(const wh_flow_state_t *state, int32_t wafer);
+static inline int32_t wh_flow_next_step(const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    return at->toward != WH_FLOW_NONE ? at->toward : wh_flow_following(state, wafer, at->step, at->place);
+}
 
 /* The station at which the robot waits with a wafer has failed: chooses another place. True if it goes on
  * there; else it waits aboard, or its route ends on the arm. */

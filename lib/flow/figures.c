@@ -187,7 +187,9 @@ static void hear(void *context, const wh_flow_state_t *state, const wh_flow_even
     if (measure->keeps != WH_FLOW_SUMS) {
         wh_flow_log_add(&measure->log, event);
     }
-    wh_flow_history_hear(&measure->history, event);
+    if (measure->history.open) {
+        wh_flow_history_hear(&measure->history, event);
+    }
 }
 
 /* One of them at a time: a clean before a pump, a pump before a failure. */
@@ -215,23 +217,27 @@ static int64_t taken_until_us(const wh_flow_state_t *state, int32_t number, int6
                : -1;
 }
 
+/* Time in which the station was cleaned, pumped or had failed. */
+static void account_aside(measure_t *measure, const wh_flow_state_t *state, int32_t number, int64_t to_us) {
+    const wh_flow_station_state_t *station = &state->stations[number];
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    const int64_t us = to_us - state->now_us;
+    for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
+        const int64_t taken_us = taken_until_us(state, p, to_us) - state->now_us;
+        const int64_t left_us = taken_us <= 0 ? us : taken_us < us ? us - taken_us : 0;
+        add_aside(&measure->asides[p], station, state->places[p].clean_us != WH_FLOW_NEVER, left_us);
+    }
+}
+
 static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) {
     measure_t *measure = context;
     const int64_t us = to_us - state->now_us;
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        measure->figures->robots[r][wh_flow_robot_class(state, (int32_t)r)] += (double)us;
+    const int32_t robots = (int32_t)state->tool->robot_count;
+    for (int32_t r = 0; r < robots; ++r) {
+        measure->figures->robots[r][wh_flow_robot_class(state, r)] += (double)us;
     }
-    for (size_t s = 0; s < state->tool->station_count; ++s) {
-        const wh_flow_station_state_t *station = &state->stations[s];
-        if (!station->is_aside) {
-            continue;
-        }
-        const wh_flow_station_t *of = &state->tool->stations[s];
-        for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
-            const int64_t taken_us = taken_until_us(state, p, to_us) - state->now_us;
-            const int64_t left_us = taken_us <= 0 ? us : taken_us < us ? us - taken_us : 0;
-            add_aside(&measure->asides[p], station, state->places[p].clean_us != WH_FLOW_NEVER, left_us);
-        }
+    for (size_t k = 0; k < state->ahead.aside_count; ++k) {
+        account_aside(measure, state, state->ahead.aside[k], to_us);
     }
 }
 

@@ -23,15 +23,19 @@ void wh_flow_begin_hold(wh_flow_state_t *state, const wh_flow_down_t *down) {
     wh_flow_tell_problem(state, &held);
 }
 
+static void end_hold(wh_flow_state_t *state, int32_t number) {
+    wh_flow_event_t held = wh_flow_event_of_station(WH_FLOW_EVENT_HELD, WH_FLOW_NONE,
+                                                    state->robots[number].held_began_us, state->now_us);
+    held.robot = number;
+    state->robots[number].held_us = 0;
+    wh_flow_tell(state, &held);
+}
+
 void wh_flow_end_holds(wh_flow_state_t *state) {
-    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
-        wh_flow_robot_state_t *robot = &state->robots[r];
-        if (robot->held_us > 0 && robot->held_us == state->now_us) {
-            wh_flow_event_t held = wh_flow_event_of_station(WH_FLOW_EVENT_HELD, WH_FLOW_NONE,
-                                                            robot->held_began_us, state->now_us);
-            held.robot = r;
-            robot->held_us = 0;
-            wh_flow_tell(state, &held);
+    const int32_t count = (int32_t)state->tool->robot_count;
+    for (int32_t r = 0; r < count; ++r) {
+        if (state->robots[r].held_us > 0 && state->robots[r].held_us == state->now_us) {
+            end_hold(state, r);
         }
     }
 }
@@ -58,17 +62,23 @@ static void end_asked(const wh_flow_state_t *state, wh_flow_robot_state_t *robot
     robot->held_us = robot->asked.planned_us > state->now_us ? robot->asked.planned_us : state->now_us;
 }
 
+static void take_hold(const wh_flow_state_t *state, wh_flow_robot_state_t *robot) {
+    if (robot->asked.is_wanted && !robot->asked.is_on) {
+        begin_asked(state, robot);
+    } else if (!robot->asked.is_wanted && robot->asked.is_on) {
+        end_asked(state, robot);
+    }
+    if (robot->asked.is_on && robot->asked.is_told && !robot->asked.stands) {
+        robot->asked.stands = true;
+        robot->asked.since_us = state->now_us;
+    }
+}
+
 void wh_flow_take_holds(wh_flow_state_t *state) {
-    for (size_t r = 0; r < state->tool->robot_count; ++r) {
-        wh_flow_robot_state_t *robot = &state->robots[r];
-        if (robot->asked.is_wanted && !robot->asked.is_on) {
-            begin_asked(state, robot);
-        } else if (!robot->asked.is_wanted && robot->asked.is_on) {
-            end_asked(state, robot);
-        }
-        if (robot->asked.is_on && robot->asked.is_told && !robot->asked.stands) {
-            robot->asked.stands = true;
-            robot->asked.since_us = state->now_us;
+    wh_flow_robot_state_t *robot = state->robots, *const behind = robot + state->tool->robot_count;
+    for (; robot < behind; ++robot) {
+        if (robot->asked.is_wanted || robot->asked.is_on) {
+            take_hold(state, robot);
         }
     }
 }

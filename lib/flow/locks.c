@@ -112,9 +112,9 @@ static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, 
 /* A free robot in front of the lock is told to bring a wafer that it has. */
 static bool is_told_to_bring(const wh_flow_robot_state_t *robot, int32_t lock) {
     const wh_flow_order_t *wish = &robot->wish;
-    const bool has_it = robot->arms[0] == wish->wafer || robot->arms[1] == wish->wafer;
     return robot->action == WH_FLOW_IDLE && robot->has_wish && wish->what == WH_FLOW_BRING &&
-           wish->at == lock && robot->station == lock && has_it;
+           wish->at == lock && robot->station == lock &&
+           (robot->arms[0] == wish->wafer || robot->arms[1] == wish->wafer);
 }
 
 /* Lists and functions have a robot bring a wafer that it keeps, which waits for the pressure alone. */
@@ -188,20 +188,13 @@ void wh_flow_lock_turn(wh_flow_state_t *state, int32_t number) {
     }
 }
 
-/* True if some robot is told to bring a wafer that it has to where it stands. */
-static bool is_any_told(const wh_flow_state_t *state) {
-    bool found = false;
-    for (size_t r = 0; r < state->tool->robot_count && !found; ++r) {
-        found = is_told_to_bring(&state->robots[r], state->robots[r].station);
-    }
-    return found;
-}
-
 void wh_flow_locks_turn_for_kept(wh_flow_state_t *state) {
-    if (state->plan->turns || !is_any_told(state)) {
+    const bool are_told = state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN;
+    if (state->plan->turns || !are_told) {
         return;
     }
-    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
+    for (size_t k = 0; k < state->ahead.acting_count; ++k) {
+        const int32_t i = state->ahead.acting[k];
         bool is_awaited = false;
         for (int32_t r = 0; state->tool->stations[i].is_lock && r < (int32_t)state->tool->robot_count; ++r) {
             is_awaited = is_awaited || is_bringing(state, i, r);

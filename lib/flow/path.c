@@ -62,7 +62,7 @@ static const wh_flow_event_t *go_back(wh_flow_path_t *path, const wh_flow_event_
     const int64_t us = event->begin_us;
     wh_flow_cause_t cause = wh_flow_cause_of(path, event);
     if (cause.rank == WH_FLOW_CAUSE_UNKNOWN) {
-        const size_t first = wh_flow_first_ending(path->log, us);
+        const size_t first = wh_flow_first_ending(path->log, us, event);
         cause.event = first > 0 ? &path->log->events[first - 1] : NULL;
     }
     const int64_t from_us = !cause.event          ? 0
@@ -126,13 +126,20 @@ static void sort_by_begins(wh_flow_begin_t *begins, size_t count) {
     }
 }
 
-static void open_path(wh_flow_path_t *path) {
-    const wh_flow_tool_t *tool = path->tool;
-    path->begins = wh_array_new(path->log->count, sizeof *path->begins);
-    for (size_t i = 0; i < path->log->count; ++i) {
-        path->begins[i].event = &path->log->events[i];
+const wh_flow_begin_t *wh_flow_begins(const wh_flow_path_t *path) {
+    wh_flow_begins_t *begins = path->begins;
+    if (!begins->of) {
+        begins->of = wh_array_new(path->log->count, sizeof *begins->of);
+        for (size_t i = 0; i < path->log->count; ++i) {
+            begins->of[i].event = &path->log->events[i];
+        }
+        sort_by_begins(begins->of, path->log->count);
     }
-    sort_by_begins(path->begins, path->log->count);
+    return begins->of;
+}
+
+static void find_longest_shutting(wh_flow_path_t *path) {
+    const wh_flow_tool_t *tool = path->tool;
     for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
         const int64_t close_us = tool->doors[i].close_us;
         path->longest_shutting_us =
@@ -142,9 +149,10 @@ static void open_path(wh_flow_path_t *path) {
 
 wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_log_t *log,
                              size_t *count) {
-    wh_flow_path_t path = {.tool = tool, .plan = plan, .log = log};
+    wh_flow_begins_t begins = {NULL};
+    wh_flow_path_t path = {.tool = tool, .plan = plan, .log = log, .begins = &begins};
     const wh_flow_event_t *event = find_last(log);
-    open_path(&path);
+    find_longest_shutting(&path);
     if (event) {
         add_event(&path, event);
     }
@@ -154,7 +162,7 @@ wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *p
     if (path.count > 0) {
         qsort(path.parts, path.count, sizeof *path.parts, by_time);
     }
-    free(path.begins);
+    free(begins.of);
     *count = path.count;
     return path.parts;
 }

@@ -5,8 +5,8 @@
  * follows on that, by another robot that begins with it; or it ended at that time. */
 enum { EMPTIED, NEEDED_FIRST, NEEDED, NEEDED_ONWARD, NEEDED_BESIDE, ENDED };
 
-size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us) {
-    size_t low = 0, high = log->count;
+/* All events before `low` end before that time, none from `high` on does. */
+static size_t first_between(const wh_flow_log_t *log, int64_t us, size_t low, size_t high) {
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (log->events[middle].end_us < us) {
@@ -16,6 +16,20 @@ size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us) {
         }
     }
     return low;
+}
+
+size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us, const wh_flow_event_t *near) {
+    const wh_flow_event_t *const events = log->events;
+    size_t low = (size_t)(near - events), high = low, step = 1;
+    for (; low > 0 && events[low - 1].end_us >= us; step *= 2) {
+        high = low - 1;
+        low = high > step ? high - step : 0;
+    }
+    for (; high < log->count && events[high].end_us < us; step *= 2) {
+        low = high + 1;
+        high = log->count - low > step ? low + step : log->count;
+    }
+    return first_between(log, us, low, high);
 }
 
 static bool is_access(const wh_flow_event_t *event) {
@@ -121,8 +135,8 @@ static bool is_just_emptied(const wh_flow_path_t *path, const aim_t *aim, int32_
 }
 
 static void offer_ends(const wh_flow_path_t *path, const aim_t *aim, int32_t robot, int64_t us,
-                       wh_flow_cause_t *best) {
-    for (size_t i = wh_flow_first_ending(path->log, us);
+                       const wh_flow_event_t *near, wh_flow_cause_t *best) {
+    for (size_t i = wh_flow_first_ending(path->log, us, near);
          i < path->log->count && path->log->events[i].end_us == us; ++i) {
         const wh_flow_event_t *ended = &path->log->events[i];
         if (ended->begin_us < us) {
@@ -133,8 +147,9 @@ static void offer_ends(const wh_flow_path_t *path, const aim_t *aim, int32_t rob
     }
 }
 
-static void offer_doors(const wh_flow_path_t *path, const aim_t *aim, int64_t us, wh_flow_cause_t *best) {
-    for (size_t i = wh_flow_first_ending(path->log, us - path->longest_shutting_us);
+static void offer_doors(const wh_flow_path_t *path, const aim_t *aim, int64_t us, const wh_flow_event_t *near,
+                        wh_flow_cause_t *best) {
+    for (size_t i = wh_flow_first_ending(path->log, us - path->longest_shutting_us, near);
          i < path->log->count && path->log->events[i].end_us < us; ++i) {
         const wh_flow_event_t *before = &path->log->events[i];
         if (is_access(before) && shut_us(path, before) == us) {
@@ -158,10 +173,11 @@ static void offer_lots(const wh_flow_path_t *path, const aim_t *aim, int64_t us,
 
 /* The first of those that began at this time or later, by their begins. */
 static size_t first_beginning(const wh_flow_path_t *path, int64_t us) {
+    const wh_flow_begin_t *begins = wh_flow_begins(path);
     size_t low = 0, high = path->log->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (path->begins[middle].event->begin_us < us) {
+        if (begins[middle].event->begin_us < us) {
             low = middle + 1;
         } else {
             high = middle;
@@ -172,8 +188,8 @@ static size_t first_beginning(const wh_flow_path_t *path, int64_t us) {
 
 /* The next that began at this time, or null; `at` counts on. */
 static const wh_flow_event_t *next_begun(const wh_flow_path_t *path, int64_t us, size_t *at) {
-    return *at < path->log->count && path->begins[*at].event->begin_us == us ? path->begins[(*at)++].event
-                                                                             : NULL;
+    const wh_flow_begin_t *begins = wh_flow_begins(path);
+    return *at < path->log->count && begins[*at].event->begin_us == us ? begins[(*at)++].event : NULL;
 }
 
 /* True if the aim is to take a wafer out of its first place. */
@@ -184,10 +200,10 @@ static bool is_start(const aim_t *aim) {
 /* A wafer's start keeps others back from its begin on, its door's opening included. */
 static void offer_takt(const wh_flow_path_t *path, const aim_t *aim, int64_t us, wh_flow_cause_t *best) {
     const int64_t begin_us = us - path->plan->takt_us;
-    size_t at = first_beginning(path, begin_us);
     if (path->plan->takt_us == 0) {
         return;
     }
+    size_t at = first_beginning(path, begin_us);
     for (const wh_flow_event_t *begun = next_begun(path, begin_us, &at); begun;
          begun = next_begun(path, begin_us, &at)) {
         const bool is_entering = begun->kind == WH_FLOW_EVENT_OPEN || takes(begun);
@@ -208,10 +224,12 @@ static void offer_failures(const wh_flow_path_t *path, int64_t us, wh_flow_cause
     }
 }
 
-static void offer_all(const wh_flow_path_t *path, const aim_t *aim, int32_t robot, int64_t us,
+/* All for which the event may have begun when it did. */
+static void offer_all(const wh_flow_path_t *path, const aim_t *aim, const wh_flow_event_t *event,
                       wh_flow_cause_t *best) {
-    offer_ends(path, aim, robot, us, best);
-    offer_doors(path, aim, us, best);
+    const int64_t us = event->begin_us;
+    offer_ends(path, aim, event->robot, us, event, best);
+    offer_doors(path, aim, us, event, best);
     offer_takt(path, aim, us, best);
     offer_lots(path, aim, us, best);
     offer_failures(path, us, best);
@@ -252,7 +270,7 @@ static wh_flow_cause_t cause_of_choice(const wh_flow_path_t *path, const wh_flow
     wh_flow_cause_t best = {
         .rank = WH_FLOW_CAUSE_UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
     const aim_t aim = event->kind == WH_FLOW_EVENT_PUMP ? aim_of_lock(path, event) : aim_of(path, event);
-    offer_all(path, &aim, event->robot, us, &best);
+    offer_all(path, &aim, event, &best);
     if (best.rank < NEEDED_BESIDE || depth == DEEPEST) {
         return best;
     }
@@ -305,7 +323,7 @@ static void offer_before_process(const wh_flow_path_t *path, const wh_flow_event
 static wh_flow_cause_t cause_of_process(const wh_flow_path_t *path, const wh_flow_event_t *event) {
     wh_flow_cause_t best = {
         .rank = WH_FLOW_CAUSE_UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
-    for (size_t i = wh_flow_first_ending(path->log, event->begin_us - path->longest_shutting_us);
+    for (size_t i = wh_flow_first_ending(path->log, event->begin_us - path->longest_shutting_us, event);
          i < path->log->count && path->log->events[i].end_us <= event->begin_us; ++i) {
         if (&path->log->events[i] != event) {
             offer_before_process(path, event, &path->log->events[i], &best);
@@ -316,7 +334,7 @@ static wh_flow_cause_t cause_of_process(const wh_flow_path_t *path, const wh_flo
 
 /* The access that took the last wafer out of the place before an event there began, or null. */
 static const wh_flow_event_t *last_taking(const wh_flow_path_t *path, const wh_flow_event_t *event) {
-    for (size_t i = wh_flow_first_ending(path->log, event->begin_us + 1); i > 0; --i) {
+    for (size_t i = wh_flow_first_ending(path->log, event->begin_us + 1, event); i > 0; --i) {
         const wh_flow_event_t *before = &path->log->events[i - 1];
         if (takes(before) && before->place == event->place) {
             return before;
@@ -345,8 +363,8 @@ static wh_flow_cause_t cause_of_clean(const wh_flow_path_t *path, const wh_flow_
     if (event->wafer != WH_FLOW_NONE) {
         return cause_of_process(path, event);
     }
-    offer_ends(path, &aim, WH_FLOW_NONE, us, &best);
-    offer_doors(path, &aim, us, &best);
+    offer_ends(path, &aim, WH_FLOW_NONE, us, event, &best);
+    offer_doors(path, &aim, us, event, &best);
     if (best.rank == NEEDED || idle_us >= us) {
         return best.rank == NEEDED ? best
                                    : (wh_flow_cause_t){.rank = WH_FLOW_CAUSE_UNKNOWN,

@@ -8,11 +8,16 @@ typedef struct {
     const wh_flow_event_t *event;
 } wh_flow_begin_t;
 
+/* The log's events by their begins; null until somebody asks. */
+typedef struct {
+    wh_flow_begin_t *of;
+} wh_flow_begins_t;
+
 typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
     const wh_flow_log_t *log;
-    wh_flow_begin_t *begins; /* the log's events, by their begins */
+    wh_flow_begins_t *begins;
     int64_t longest_shutting_us;
     wh_flow_part_t *parts;
     size_t count, capacity;
@@ -32,7 +37,10 @@ typedef struct {
 
 wh_flow_cause_t wh_flow_cause_of(const wh_flow_path_t *path, const wh_flow_event_t *event);
 
-/* The log's first event that ends at this time or later. */
-size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us);
+/* The log's first event that ends at this time or later, which is looked for from the event `near` on. */
+size_t wh_flow_first_ending(const wh_flow_log_t *log, int64_t us, const wh_flow_event_t *near);
+
+/* The log's events by their begins; of one instant in the order of the log. */
+const wh_flow_begin_t *wh_flow_begins(const wh_flow_path_t *path);
 
 #endif

@@ -23,12 +23,12 @@ static bool is_ahead(const wh_flow_state_t *state, int64_t us) {
 
 /* True if a robot carries a wafer on, or is about to. */
 static bool is_any_under_way(const wh_flow_state_t *state) {
-    bool found = false;
-    for (size_t r = 0; r < state->tool->robot_count && !found; ++r) {
-        const wh_flow_action_t action = state->robots[r].action;
-        found = action != WH_FLOW_IDLE && action != WH_FLOW_MOVING && action != WH_FLOW_WAITING;
+    const wh_flow_robot_state_t *robot = state->robots, *const behind = robot + state->tool->robot_count;
+    while (robot < behind && (robot->action == WH_FLOW_IDLE || robot->action == WH_FLOW_MOVING ||
+                              robot->action == WH_FLOW_WAITING)) {
+        ++robot;
     }
-    return found;
+    return robot < behind;
 }
 
 static bool is_any_in(const wh_flow_state_t *state, const wh_flow_station_state_t *station) {

@@ -20,6 +20,7 @@ static void act(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action, 
     wh_flow_robot_state_t *at = &state->robots[robot];
     at->action = action;
     at->since_us = state->now_us;
+    at->kept_out.station = WH_FLOW_NONE;
     wh_flow_stand_anew(state, robot);
     at->is_begun = wh_flow_is_played(state, robot);
     at->until_us = for_us == WH_FLOW_NEVER || at->is_begun ? WH_FLOW_NEVER : end_of(state, action, for_us);
@@ -39,6 +40,7 @@ static void enter(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action
     wh_flow_robot_state_t *at = &state->robots[robot];
     const wh_flow_door_t *door = &state->tool->doors[wh_flow_of(state->tool, robot, at->station)];
     const int64_t open_us = door->open_us, close_us = door->close_us;
+    wh_flow_stir(state, at->station);
     state->stations[at->station].user = robot;
     state->stations[at->station].busy_us = state->now_us + open_us + for_us + close_us;
     at->then = action;
@@ -132,11 +134,26 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
     }
 }
 
+/* It waits for the station alone; by other rules than lists a free robot may be told something else. */
+static void keep_out(wh_flow_state_t *state, int32_t robot, int32_t station) {
+    wh_flow_robot_state_t *at = &state->robots[robot];
+    if (at->action == WH_FLOW_WAITING || state->plan->rule == WH_FLOW_LISTS) {
+        at->kept_out = (wh_flow_kept_out_t){station, state->stations[station].changes};
+    }
+}
+
 static bool begin_pick(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
     wh_flow_robot_state_t *at = &state->robots[robot];
-    if (order->wafer == WH_FLOW_NONE || !wh_flow_may_take(state, robot, order->wafer) ||
-        wh_flow_takeable_us(state, robot, order->wafer) > state->now_us ||
+    if (order->wafer == WH_FLOW_NONE) {
+        return false;
+    }
+    if (state->wafers[order->wafer].done_us > state->now_us ||
         !wh_flow_may_enter(state, robot, at->station)) {
+        keep_out(state, robot, at->station);
+        return false;
+    }
+    if (!wh_flow_may_take(state, robot, order->wafer) ||
+        wh_flow_takeable_us(state, robot, order->wafer) > state->now_us) {
         return false;
     }
     const int64_t pick_us = wh_flow_pick_us(state, robot, at->station);
@@ -208,6 +225,7 @@ static bool begin_swap(wh_flow_state_t *state, int32_t robot, const wh_flow_orde
 
 static bool begin_pump(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
     if (!wh_flow_lock_pump(state, order->station, order->side)) {
+        keep_out(state, robot, order->station);
         return false;
     }
     state->robots[robot].mark = order->mark;
@@ -257,12 +275,14 @@ static bool turn_away(wh_flow_state_t *state, int32_t robot) {
 
 bool wh_flow_robot_place(wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
-    if (at->to == WH_FLOW_NONE || wh_flow_has_failed(state, state->tool->place_stations[at->to])) {
+    if (at->to == WH_FLOW_NONE || (state->failures.stations > 0 &&
+                                   wh_flow_has_failed(state, state->tool->place_stations[at->to]))) {
         return turn_away(state, robot);
     }
     const wh_flow_place_t *place = &state->places[at->to];
     if (place->wafer != WH_FLOW_NONE || place->clean_us != WH_FLOW_NEVER || place->is_clean_due ||
         !wh_flow_may_enter(state, robot, at->station)) {
+        keep_out(state, robot, at->station);
         return false;
     }
     state->places[at->to].idle_us = WH_FLOW_NEVER;

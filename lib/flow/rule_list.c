@@ -171,6 +171,10 @@ bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *or
     }
     const wh_flow_line_t *line = &list->lines[number];
     const bool is_known = at->possible == number && at->possible_at == state->changes;
+    if (is_known && at->has_wish) {
+        *order = at->wish;
+        return true;
+    }
     const char *why = wh_flow_order_line(state, robot, line, is_known, order);
     order->mark = number + 1;
     if (!why) {

@@ -29,9 +29,19 @@ static void open_stations(wh_flow_state_t *state) {
             .done_us = WH_FLOW_NEVER,
             .changed_us = WH_FLOW_NEVER,
             .side = tool->stations[i].side,
-            .acts = tool->stations[i].is_lock || wh_flow_is_cleaned(&tool->stations[i]),
             .real = {.shutter = WH_FLOW_NONE, .work_wafer = WH_FLOW_NONE, .closed_us = -1}};
         state->calls.are_there = state->calls.are_there || tool->stations[i].has_carriers;
+        state->ahead.touched[state->ahead.touched_count++] = (int32_t)i;
+    }
+}
+
+static void find_acting(wh_flow_state_t *state) {
+    const wh_flow_tool_t *tool = state->tool;
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        const bool turns = tool->stations[i].is_lock && !state->stations[i].is_listed;
+        if (turns || wh_flow_is_cleaned(&tool->stations[i])) {
+            state->ahead.acting[state->ahead.acting_count++] = (int32_t)i;
+        }
     }
 }
 
@@ -43,6 +53,7 @@ static void open_robots(wh_flow_state_t *state) {
                                                    .from = WH_FLOW_NONE,
                                                    .to = WH_FLOW_NONE,
                                                    .possible = WH_FLOW_NONE,
+                                                   .kept_out = {WH_FLOW_NONE, 0},
                                                    .arms = {WH_FLOW_NONE, WH_FLOW_NONE}};
         for (size_t k = 0; plan->lists && k < plan->lists[i].count; ++k) {
             if (plan->lists[i].lines[k].what == WH_FLOW_PUMP) {
@@ -60,6 +71,10 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
         .stations = wh_array_new(tool->station_count, sizeof *state->stations),
         .robots = wh_array_new(tool->robot_count, sizeof *state->robots),
         .wafers = wh_array_new(plan->wafer_count, sizeof *state->wafers),
+        .ahead = {.next_us = wh_array_new(tool->station_count, sizeof *state->ahead.next_us),
+                  .touched = wh_array_new(tool->station_count, sizeof *state->ahead.touched),
+                  .aside = wh_array_new(tool->station_count, sizeof *state->ahead.aside),
+                  .acting = wh_array_new(tool->station_count, sizeof *state->ahead.acting)},
         .calls.of = wh_array_new(plan->call_count + 1, sizeof *state->calls.of),
         .calls.has_come = wh_array_new(plan->lot_count + 1, sizeof *state->calls.has_come),
         .counts = wh_array_new(plan->step_count, sizeof *state->counts),
@@ -71,6 +86,7 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
     };
     open_stations(state);
     open_robots(state);
+    find_acting(state);
     for (size_t i = 0; i < plan->wafer_count; ++i) {
         state->wafers[i] = (wh_flow_wafer_state_t){.place = WH_FLOW_NONE,
                                                    .robot = WH_FLOW_NONE,
@@ -91,6 +107,10 @@ void wh_flow_state_close(wh_flow_state_t *state) {
     free(state->stations);
     free(state->robots);
     free(state->wafers);
+    free(state->ahead.next_us);
+    free(state->ahead.touched);
+    free(state->ahead.aside);
+    free(state->ahead.acting);
     free(state->calls.of);
     free(state->calls.has_come);
     free(state->counts);
@@ -101,11 +121,6 @@ void wh_flow_state_close(wh_flow_state_t *state) {
     wh_flow_safety_close(state->safety);
     free(state->cause);
     memset(state, 0, sizeof *state);
-}
-
-size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step) {
-    const wh_flow_plan_t *plan = state->plan;
-    return plan->routes[plan->lots[plan->wafers[wafer].lot].route].first_step + (size_t)step;
 }
 
 void wh_flow_note_over(wh_flow_state_t *state) {
@@ -234,11 +249,6 @@ int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wa
         }
     }
     return WH_FLOW_NONE;
-}
-
-int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer) {
-    const int32_t place = state->wafers[wafer].place;
-    return place == WH_FLOW_NONE ? WH_FLOW_NONE : state->tool->place_stations[place];
 }
 
 wh_flow_event_t wh_flow_event_of_station(wh_flow_event_kind_t kind, int32_t station, int64_t begin_us,

@@ -55,14 +55,13 @@ typedef struct {
     int64_t pump_began_us;
     int64_t done_us; /* the end of the process that ends next, or WH_FLOW_NEVER */
     wh_flow_side_t side, pump_to;
-    bool is_listed; /* a lock that lists turn */
+    bool is_listed;   /* a lock that lists turn */
+    uint64_t changes; /* of whether a blade may enter, and of what lies there */
     int32_t wafers;
     int32_t accesses;              /* picks, places and swaps that have ended */
     int32_t turned;                /* turns of its own list that have begun */
-    bool acts;                     /* it is a lock, or cleaned by itself */
     bool has_due;                  /* one of its places must be cleaned, and is not yet */
     bool is_aside;                 /* as the last instant ended it was cleaned, pumped or had failed */
-    int64_t next_us;               /* as the last instant ended: when something of it ends next, or never */
     int32_t call;                  /* the number, from 1, of the carrier's call that goes on; 0: none does */
     int64_t change_us, changed_us; /* a full carrier is changed for an empty one: since when, until when, or
                                     * WH_FLOW_NEVER */
@@ -116,6 +115,12 @@ typedef struct {
     int64_t planned_us;      /* until then the plan holds it, too */
 } wh_flow_asked_t;
 
+/* A robot that waits for a station alone: it need not be asked before that has changed. */
+typedef struct {
+    int32_t station; /* WH_FLOW_NONE: it waits for nothing, or for more than that */
+    uint64_t changes;
+} wh_flow_kept_out_t;
+
 typedef struct {
     wh_flow_action_t action, then; /* then: what comes after the door */
     int64_t since_us, until_us;    /* of the action; until: WH_FLOW_NEVER for those that wait */
@@ -133,6 +138,7 @@ typedef struct {
     wh_flow_asked_t asked;          /* by a request, for as long as that stands */
     /* Real ones: the action has begun, and nobody has taken it up yet; it has ended, and that was told. */
     bool is_begun, is_ended;
+    wh_flow_kept_out_t kept_out;
 } wh_flow_robot_state_t;
 
 typedef enum {
@@ -206,6 +212,18 @@ typedef struct {
     size_t stations, wafers;
 } wh_flow_failures_t;
 
+/* Stations by what may happen in them. */
+typedef struct {
+    int64_t *next_us;    /* as the last instant ended, when something of each ends next, or never; 0: touched */
+    int64_t soonest_us;  /* the least of them */
+    int32_t *touched;    /* those whose times have changed since */
+    size_t touched_count;
+    int32_t *aside; /* those that are aside, in no order */
+    size_t aside_count;
+    int32_t *acting; /* locks that no list turns, and those that are cleaned */
+    size_t acting_count;
+} wh_flow_ahead_t;
+
 /* Carriers and their lots. */
 typedef struct {
     wh_flow_call_state_t *of; /* by call */
@@ -222,6 +240,7 @@ typedef struct wh_flow_state {
     wh_flow_station_state_t *stations;
     wh_flow_robot_state_t *robots;
     wh_flow_wafer_state_t *wafers;
+    wh_flow_ahead_t ahead;
     wh_flow_calls_t calls;
     int32_t *counts;        /* by step: from the begin of the transfer in to the end of the pick out */
     int32_t *leaving;       /* by step: those of them whose pick out runs */
@@ -241,9 +260,19 @@ typedef struct wh_flow_state {
     char *cause;        /* why the flow ended early, or null; freed by wh_flow_state_close */
 } wh_flow_state_t;
 
-/* Times of the station have changed. */
+/* A blade may enter the station now, or may no longer, or other wafers lie there. */
+static inline void wh_flow_stir(wh_flow_state_t *state, int32_t station) {
+    ++state->stations[station].changes;
+}
+
+/* Likewise, and its times have changed. */
 static inline void wh_flow_touch(wh_flow_state_t *state, int32_t station) {
-    state->stations[station].next_us = 0;
+    wh_flow_ahead_t *ahead = &state->ahead;
+    wh_flow_stir(state, station);
+    if (ahead->next_us[station] != 0) {
+        ahead->next_us[station] = 0;
+        ahead->touched[ahead->touched_count++] = station;
+    }
 }
 
 /* The tool's beginning. The tool and the plan must outlive the state; the plan must be finished. */
@@ -251,7 +280,9 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
 void wh_flow_state_close(wh_flow_state_t *state);
 
 /* The index of a wafer's step in counts, heads and tails. */
-size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step);
+static inline size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step) {
+    return wh_flow_route_of(state->plan, wafer)->first_step + (size_t)step;
+}
 
 /* One more wafer is over, which its state says already. */
 void wh_flow_note_over(wh_flow_state_t *state);
@@ -291,7 +322,10 @@ static inline bool wh_flow_is_clean_behind(const wh_flow_state_t *state, int32_t
 }
 
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
-int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
+static inline int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer) {
+    const int32_t place = state->wafers[wafer].place;
+    return place == WH_FLOW_NONE ? WH_FLOW_NONE : state->tool->place_stations[place];
+}
 
 /* An event of a wafer in the place where it lies, from `begin_us` until now; without a robot. */
 wh_flow_event_t wh_flow_event_at(const wh_flow_state_t *state, wh_flow_event_kind_t kind, int32_t wafer,

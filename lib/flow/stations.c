@@ -170,20 +170,29 @@ static void end_doings(wh_flow_state_t *state, int32_t number) {
     }
 }
 
+/* Something of the station ends now, or its times have changed. */
+static void end_station(wh_flow_state_t *state, int32_t number) {
+    wh_flow_station_state_t *station = &state->stations[number];
+    wh_flow_touch(state, number);
+    if (!state->tool->stations[number].is_real) {
+        end_doings(state, number);
+    }
+    if (station->down_us == state->now_us) {
+        station->down_us = WH_FLOW_NEVER;
+        tell(state, WH_FLOW_EVENT_DOWN, number, station->down_began_us);
+        wh_flow_set_down(state, number, false);
+    }
+}
+
 void wh_flow_stations_end(wh_flow_state_t *state) {
-    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
-        wh_flow_station_state_t *station = &state->stations[i];
-        if (station->next_us > state->now_us) {
-            continue;
-        }
-        wh_flow_touch(state, i);
-        if (!state->tool->stations[i].is_real) {
-            end_doings(state, i);
-        }
-        if (station->down_us == state->now_us) {
-            station->down_us = WH_FLOW_NEVER;
-            tell(state, WH_FLOW_EVENT_DOWN, i, station->down_began_us);
-            wh_flow_set_down(state, i, false);
+    const wh_flow_ahead_t *ahead = &state->ahead;
+    const int32_t count = (int32_t)state->tool->station_count;
+    if (ahead->touched_count == 0 && ahead->soonest_us > state->now_us) {
+        return;
+    }
+    for (int32_t i = 0; i < count; ++i) {
+        if (ahead->next_us[i] <= state->now_us) {
+            end_station(state, i);
         }
     }
 }
@@ -218,6 +227,7 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         wh_flow_wafer_state_t *wafer = &state->wafers[i];
         wafer->place = state->plan->wafers[i].home;
         wafer->entered_us = wafer->done_us = state->now_us;
+        wh_flow_stir(state, state->tool->place_stations[wafer->place]);
         state->places[wafer->place].wafer = (int32_t)i;
         state->places[wafer->place].recipe = state->plan->wafers[i].recipe;
         ++state->stations[state->tool->place_stations[wafer->place]].wafers;
@@ -254,6 +264,7 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
         const int32_t place = state->plan->wafers[i].home, wafer = state->places[place].wafer;
         if (wafer != WH_FLOW_NONE) {
+            wh_flow_stir(state, state->tool->place_stations[place]);
             state->places[place].wafer = WH_FLOW_NONE;
             state->wafers[wafer].place = WH_FLOW_NONE;
             --state->stations[state->tool->place_stations[place]].wafers;
@@ -364,15 +375,15 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
     while (state->next.down < plan->down_count && plan->downs[state->next.down].at_us <= state->now_us) {
         begin_down(state, &plan->downs[state->next.down++]);
     }
-    wh_flow_end_routes(state); /* a lot may be over by that, and make room for another one */
+    if (state->failures.stations > 0) {
+        wh_flow_end_routes(state); /* a lot may be over by that, and make room for another one */
+    }
     while (goes_on) {
-        goes_on = wh_flow_calls_go(state);
+        goes_on = state->calls.are_there && wh_flow_calls_go(state);
         goes_on = begin_lots(state) || goes_on;
     }
-    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
-        if (!state->stations[i].acts) {
-            continue;
-        }
+    for (size_t k = 0; k < state->ahead.acting_count; ++k) {
+        const int32_t i = state->ahead.acting[k];
         if (is_any_clean_due(state, i)) {
             begin_cleans(state, i);
         }
@@ -393,9 +404,24 @@ static int64_t or_never(int64_t us) {
     return us < WH_FLOW_FOR_EVER ? us : WH_FLOW_NEVER;
 }
 
-/* When something of the station ends next, WH_FLOW_FOR_EVER: nothing does. */
-static int64_t station_next(const wh_flow_state_t *state, size_t number) {
-    wh_flow_station_state_t *station = &state->stations[number];
+/* The station is aside now, or no longer. */
+static void note_aside(wh_flow_state_t *state, int32_t number, bool is_aside) {
+    wh_flow_ahead_t *ahead = &state->ahead;
+    state->stations[number].is_aside = is_aside;
+    if (is_aside) {
+        ahead->aside[ahead->aside_count++] = number;
+        return;
+    }
+    size_t at = 0;
+    while (ahead->aside[at] != number) {
+        ++at;
+    }
+    ahead->aside[at] = ahead->aside[--ahead->aside_count];
+}
+
+/* Notes when something of the station ends next, WH_FLOW_FOR_EVER: nothing does. */
+static void note_next(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_state_t *station = &state->stations[number];
     const int64_t now_us = state->now_us;
     int64_t next_us = sooner(now_us, WH_FLOW_FOR_EVER, station->shut_us);
     next_us = sooner(now_us, next_us, station->down_us);
@@ -404,32 +430,62 @@ static int64_t station_next(const wh_flow_state_t *state, size_t number) {
         next_us = sooner(now_us, next_us, station->clean_us);
         next_us = sooner(now_us, next_us, station->pump_us);
     }
-    station->next_us = next_us;
-    station->is_aside = station->clean_us != WH_FLOW_NEVER || station->pump_us != WH_FLOW_NEVER ||
-                        station->down_us != WH_FLOW_NEVER;
+    const bool is_aside = station->clean_us != WH_FLOW_NEVER || station->pump_us != WH_FLOW_NEVER ||
+                          station->down_us != WH_FLOW_NEVER;
+    if (is_aside != station->is_aside) {
+        note_aside(state, number, is_aside);
+    }
+    state->ahead.next_us[number] = next_us;
+}
+
+/* Looks again at the stations whose times have changed, or at all of them if others may change these. */
+static void note_nexts(wh_flow_state_t *state) {
+    wh_flow_ahead_t *ahead = &state->ahead;
+    for (size_t k = 0; k < ahead->touched_count; ++k) {
+        note_next(state, ahead->touched[k]);
+    }
+    for (int32_t i = 0; state->outside && i < (int32_t)state->tool->station_count; ++i) {
+        note_next(state, i);
+    }
+    ahead->touched_count = 0;
+}
+
+/* The next end of something in any station. */
+static int64_t next_end(const wh_flow_state_t *state) {
+    const int64_t *us = state->ahead.next_us, *const behind = us + state->tool->station_count;
+    int64_t next_us = WH_FLOW_FOR_EVER;
+    for (; us < behind; ++us) {
+        next_us = *us < next_us ? *us : next_us;
+    }
     return next_us;
 }
 
-int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
-    const wh_flow_plan_t *plan = state->plan;
-    const int64_t now_us = state->now_us;
-    int64_t next_us = WH_FLOW_FOR_EVER, idle = WH_FLOW_FOR_EVER;
-    const size_t count = state->tool->station_count;
-    const bool are_kept = !state->outside;
-    for (size_t i = 0; i < count; ++i) {
-        const bool is_known = are_kept && state->stations[i].next_us > now_us;
-        const int64_t its_us = is_known ? state->stations[i].next_us : station_next(state, i);
-        next_us = its_us < next_us ? its_us : next_us;
-        if (state->stations[i].acts && !state->tool->stations[i].is_real) {
-            idle = sooner(now_us, idle, state->stations[i].idle_us);
+/* When a clean is due next because no wafer came, WH_FLOW_FOR_EVER: none is. */
+static int64_t next_idle(const wh_flow_state_t *state) {
+    int64_t idle_us = WH_FLOW_FOR_EVER;
+    for (size_t k = 0; k < state->ahead.acting_count; ++k) {
+        const int32_t i = state->ahead.acting[k];
+        if (!state->tool->stations[i].is_real) {
+            idle_us = sooner(state->now_us, idle_us, state->stations[i].idle_us);
         }
     }
-    *idle_us = or_never(idle);
+    return idle_us;
+}
+
+int64_t wh_flow_stations_next(wh_flow_state_t *state, int64_t *idle_us) {
+    const wh_flow_plan_t *plan = state->plan;
+    const int64_t now_us = state->now_us;
+    note_nexts(state);
+    int64_t next_us = next_end(state);
+    state->ahead.soonest_us = next_us;
+    *idle_us = or_never(next_idle(state));
     next_us = sooner(now_us, next_us, state->next.start_us);
     if (state->next.lot < plan->lot_count) {
         next_us = sooner(now_us, next_us, plan->lots[state->next.lot].arrives_us);
     }
-    next_us = sooner(now_us, next_us, wh_flow_calls_next(state));
+    if (state->calls.are_there) {
+        next_us = sooner(now_us, next_us, wh_flow_calls_next(state));
+    }
     if (state->next.down < plan->down_count) {
         next_us = sooner(now_us, next_us, plan->downs[state->next.down].at_us);
     }

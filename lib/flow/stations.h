@@ -16,6 +16,6 @@ void wh_flow_stations_begin(wh_flow_state_t *state);
 
 /* The next instant after now at which something ends or begins in the stations by itself. Cleans for want
  * of wafers are left out: they bring nobody further. `idle_us` receives the next of them. */
-int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us);
+int64_t wh_flow_stations_next(wh_flow_state_t *state, int64_t *idle_us);
 
 #endif

@@ -73,15 +73,6 @@ void wh_flow_route_close(wh_flow_route_t *route) {
     free(route->name);
 }
 
-bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (step->stations[i] == station) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void wh_flow_tool_close(wh_flow_tool_t *tool) {
     for (size_t i = 0; i < tool->station_count; ++i) {
         free(tool->stations[i].name);

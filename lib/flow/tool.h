@@ -139,7 +139,14 @@ void wh_flow_tool_close(wh_flow_tool_t *tool);
 void wh_flow_route_close(wh_flow_route_t *route);
 
 /* True if the step has this station. */
-bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
+static inline bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (step->stations[i] == station) {
+            return true;
+        }
+    }
+    return false;
+}
 
 /* A tool of its own, equal to a numbered one, but without its routes. */
 void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool);

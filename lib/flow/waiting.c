@@ -57,32 +57,20 @@ static wh_flow_robot_class_t wishing(const wh_flow_state_t *state, int32_t robot
     }
 }
 
-static wh_flow_robot_class_t doing(const wh_flow_state_t *state, int32_t robot) {
-    const wh_flow_robot_state_t *at = &state->robots[robot];
-    switch (at->action) {
-    case WH_FLOW_MOVING:
-        return WH_FLOW_ROBOT_EMPTY_WAY;
-    case WH_FLOW_CARRYING:
-        return WH_FLOW_ROBOT_LOADED_WAY;
-    case WH_FLOW_OPENING:
-        return WH_FLOW_ROBOT_DOOR;
-    case WH_FLOW_PICKING:
-        return WH_FLOW_ROBOT_PICK;
-    case WH_FLOW_PLACING:
-        return WH_FLOW_ROBOT_PLACE;
-    case WH_FLOW_SWAPS:
-        return WH_FLOW_ROBOT_SWAP;
-    case WH_FLOW_WAITING:
-        return placing(state, at->to);
-    case WH_FLOW_IDLE:
-    default:
-        return wishing(state, robot);
-    }
-}
+/* The classes of robots that do something. */
+static const wh_flow_robot_class_t classes[] = {
+    [WH_FLOW_MOVING] = WH_FLOW_ROBOT_EMPTY_WAY, [WH_FLOW_CARRYING] = WH_FLOW_ROBOT_LOADED_WAY,
+    [WH_FLOW_OPENING] = WH_FLOW_ROBOT_DOOR,     [WH_FLOW_PICKING] = WH_FLOW_ROBOT_PICK,
+    [WH_FLOW_PLACING] = WH_FLOW_ROBOT_PLACE,    [WH_FLOW_SWAPS] = WH_FLOW_ROBOT_SWAP,
+};
 
 wh_flow_robot_class_t wh_flow_robot_class(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     const bool rests = at->action == WH_FLOW_IDLE || at->action == WH_FLOW_WAITING;
-    return (rests && at->held_us > state->now_us) || at->asked.stands ? WH_FLOW_ROBOT_WAITS_DOWN
-                                                                      : doing(state, robot);
+    if ((rests && at->held_us > state->now_us) || at->asked.stands) {
+        return WH_FLOW_ROBOT_WAITS_DOWN;
+    }
+    return !rests                          ? classes[at->action]
+           : at->action == WH_FLOW_WAITING ? placing(state, at->to)
+                                           : wishing(state, robot);
 }

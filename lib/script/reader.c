@@ -183,12 +183,26 @@ static bool is_entry(lua_State *L, lua_Integer count) {
     return whole && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= count;
 }
 
+/* Counts the entries. True if their keys are 1, 2, ... without a gap: whole ones, the highest of which is
+ * their number. */
+static bool is_list(lua_State *L, size_t *count) {
+    lua_Integer highest = 0;
+    bool are_whole = true;
+    *count = 0;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const lua_Integer key = lua_isinteger(L, -2) ? lua_tointeger(L, -2) : 0;
+        are_whole = are_whole && key >= 1;
+        highest = key > highest ? key : highest;
+        ++*count;
+    }
+    return are_whole && highest == (lua_Integer)*count;
+}
+
 /* Pushes a key that is not allowed in a list of this number of entries, and its value; false if there is
  * none. Counts the entries. */
 static bool push_stray(lua_State *L, size_t *count) {
-    *count = 0;
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        ++*count;
+    if (is_list(L, count)) {
+        return false;
     }
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         if (!is_entry(L, (lua_Integer)*count)) {
