@@ -11,8 +11,8 @@
 
 #include "state.h"
 
-/* True if no blade may enter the station because no open carrier stands there. The first one is asked of those
- * with carriers alone. */
+/* True if no blade may enter the station because no open carrier stands there. The first one is asked of
+ * stations with carriers. */
 bool wh_flow_is_without_carrier(const wh_flow_state_t *state, int32_t station);
 
 static inline bool wh_flow_is_port_shut(const wh_flow_state_t *state, int32_t station) {

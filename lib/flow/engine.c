@@ -81,8 +81,8 @@ static bool begin_order(wh_flow_state_t *state, int32_t robot, const wh_flow_ord
     return begun;
 }
 
-/* True if it waits for a station that has not changed since it was asked. What somebody else plays, where
- * carriers come and where stations have failed, more may have. */
+/* True if it waits for a station that has not changed since it was asked. More may change than that if
+ * somebody else plays, if carriers come, and if stations have failed. */
 static bool is_kept_out(const wh_flow_state_t *state, const wh_flow_kept_out_t *kept_out) {
     return kept_out->station != WH_FLOW_NONE &&
            state->stations[kept_out->station].changes == kept_out->changes && !state->outside &&

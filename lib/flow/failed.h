@@ -16,8 +16,8 @@ static inline bool wh_flow_has_failed(const wh_flow_state_t *state, int32_t stat
 /* True if all stations of the step have failed. */
 bool wh_flow_step_has_failed(const wh_flow_state_t *state, const wh_flow_step_t *step);
 
-/* The step behind this one that has not failed, for a wafer that lies in `place` (or WH_FLOW_NONE); WH_FLOW_NONE: its route ends
- * there. */
+/* The step behind this one for a wafer that lies in `place` (or WH_FLOW_NONE); WH_FLOW_NONE: its route ends
+ * there. The first one is asked once some station has failed. */
 int32_t wh_flow_following_open(const wh_flow_state_t *state, int32_t wafer, int32_t step, int32_t place);
 
 static inline int32_t wh_flow_following(const wh_flow_state_t *state, int32_t wafer, int32_t step,

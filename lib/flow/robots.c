@@ -275,8 +275,8 @@ static bool turn_away(wh_flow_state_t *state, int32_t robot) {
 
 bool wh_flow_robot_place(wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
-    if (at->to == WH_FLOW_NONE || (state->failures.stations > 0 &&
-                                   wh_flow_has_failed(state, state->tool->place_stations[at->to]))) {
+    if (at->to == WH_FLOW_NONE ||
+        (state->failures.stations > 0 && wh_flow_has_failed(state, state->tool->place_stations[at->to]))) {
         return turn_away(state, robot);
     }
     const wh_flow_place_t *place = &state->places[at->to];

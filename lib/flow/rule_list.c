@@ -86,7 +86,7 @@ static int32_t kept_for(const wh_flow_state_t *state, int32_t robot, const wh_fl
 
 /* True if some wafer lies, or will lie, in the line's station before a step that the line serves. */
 static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
-    for (int32_t w = state->first_open; w < (int32_t)state->plan->wafer_count; ++w) {
+    for (int32_t w = state->next.wafer; w < (int32_t)state->plan->wafer_count; ++w) {
         const int32_t last = wh_flow_last_step(state->plan, w);
         if (state->wafers[w].is_over || (line->wafer != WH_FLOW_NONE && line->wafer != w)) {
             continue;

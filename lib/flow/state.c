@@ -126,9 +126,9 @@ void wh_flow_state_close(wh_flow_state_t *state) {
 void wh_flow_note_over(wh_flow_state_t *state) {
     ++state->over;
     ++state->changes;
-    while (state->first_open < (int32_t)state->plan->wafer_count &&
-           state->wafers[state->first_open].is_over) {
-        ++state->first_open;
+    while (state->next.wafer < (int32_t)state->plan->wafer_count &&
+           state->wafers[state->next.wafer].is_over) {
+        ++state->next.wafer;
     }
 }
 

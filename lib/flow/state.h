@@ -199,6 +199,7 @@ typedef struct {
 typedef struct {
     size_t lot, down; /* their indices in the plan; all lots before this one are there */
     int64_t start_us; /* by takt */
+    int32_t wafer;    /* all before this one are over */
 } wh_flow_next_t;
 
 /* The places into which a wafer comes, in no order. */
@@ -214,9 +215,9 @@ typedef struct {
 
 /* Stations by what may happen in them. */
 typedef struct {
-    int64_t *next_us;    /* as the last instant ended, when something of each ends next, or never; 0: touched */
-    int64_t soonest_us;  /* the least of them */
-    int32_t *touched;    /* those whose times have changed since */
+    int64_t *next_us; /* of each, as the last instant ended: when something ends next, or never; 0: touched */
+    int64_t soonest_us; /* the least of them */
+    int32_t *touched;   /* those whose times have changed since */
     size_t touched_count;
     int32_t *aside; /* those that are aside, in no order */
     size_t aside_count;
@@ -251,8 +252,7 @@ typedef struct wh_flow_state {
     wh_flow_next_t next;
     size_t over; /* wafers at their end, lost ones with them */
     wh_flow_failures_t failures;
-    int32_t first_open; /* all wafers before this one are over */
-    int64_t last_us;    /* the end of the last placing */
+    int64_t last_us; /* the end of the last placing */
     wh_flow_listener_t listener;
     const wh_flow_outside_t *outside; /* null: nothing is real */
     bool checks_safety; /* rules leave out transfers after which wafers could block each other */
