@@ -57,6 +57,10 @@ class Cell:
         self.doors[name] = {"at": [2000, 100 * len(self.doors), 0], **DOOR, "seconds": self.time(1, 2)}
         return name
 
+    def served(self, robot):
+        """With one robot there is nothing to say."""
+        return {"by": {robot: {}}} if self.has_locks else {}
+
     def clean(self):
         if not self.some(0.4):
             return None
@@ -69,7 +73,7 @@ class Cell:
         turn = math.radians(degrees)
         return {"at": [740 * math.cos(turn), 740 * math.sin(turn), 900], "rpy": [0, 0, degrees], "retract": 340, "slots": self.draw.choice((1, 1, 1, 2)),
                 "process": self.time(0, 40), "window": self.time(20, 60) if self.some(0.3) else None, "clean": self.clean(),
-                "door": self.door(name + "_door", 0.4), "by": {"VAC": {}}}
+                "door": self.door(name + "_door", 0.4), **self.served("VAC")}
 
     def lock(self, name, y):
         aside = math.degrees(math.atan2(y, 730))
@@ -86,11 +90,11 @@ class Cell:
             by = {"ATM": {} if self.is_timed else {"rail": 250 * side}}
             return {"slots": 8, "at": [AIR - 700, 250 * side, 900], "rpy": [0, 0, 180], "retract": 340, "by": by}
         turn = math.radians(180 + 40 * side)
-        return {"slots": 8, "at": [740 * math.cos(turn), 740 * math.sin(turn), 900], "rpy": [0, 0, 180 + 40 * side], "retract": 340, "by": {"VAC": {}}}
+        return {"slots": 8, "at": [740 * math.cos(turn), 740 * math.sin(turn), 900], "rpy": [0, 0, 180 + 40 * side], "retract": 340}
 
     # ---------------------------------------------------------------------------------------------------------- layout
     def robots(self):
-        robots = {"VAC": {"kind": "TRZ", **({"arms": [{"heading": 0}, {"heading": 180, "height": 10}]} if self.arms == 2 else {})}}
+        robots = {"VAC": {"kind": "TRZ", "loaded": {"acceleration": 1900}, **({"arms": [{"heading": 0}, {"heading": 180, "height": 10}]} if self.arms == 2 else {})}}
         if not self.has_locks:
             return robots
         timed = {"kind": "timed", "pick": self.time(1, 5), "place": self.time(1, 5), "move": self.time(0, 3), "arms": self.draw.choice((1, 2)), "at": "FROM"}
