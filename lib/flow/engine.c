@@ -101,6 +101,7 @@ static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, in
     if (!is_free(state, at)) {
         return false;
     }
+    at->kept_out.station = WH_FLOW_NONE;
     if (at->action == WH_FLOW_WAITING) {
         return wh_flow_robot_place(state, robot);
     }
