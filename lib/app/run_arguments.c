@@ -295,10 +295,16 @@ static bool write_schedule(void *user, FILE *out) {
     return wh_schedule_write(((const history_t *)user)->figures, out);
 }
 
-/* False, with a message, for a run without the flow that the file of an option tells of. */
+static bool is_flow_played(const wh_record_t *record) {
+    return record->flow && record->flow->figures.tool;
+}
+
+/* False, with a message, for a run without the flow that the file of an option tells of. A flow that was
+ * refused has failed the run: its file is not written, either. */
 static bool has_flow(const char *option, const char *path, const wh_record_t *record) {
-    if (path && !record->flow) {
-        fprintf(stderr, "%s: %s: not written (expected a script with a flow)\n", option, path);
+    if (path && !is_flow_played(record)) {
+        fprintf(stderr, "%s: %s: not written (expected a %s)\n", option, path,
+                record->flow ? "flow that is played" : "script with a flow");
     }
     return !path || record->flow;
 }
@@ -307,13 +313,15 @@ static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {0};
-    history_t history = {arguments, run->record.flow ? &run->record.flow->figures : NULL};
+    const bool plays = is_flow_played(&run->record);
+    history_t history = {arguments, plays ? &run->record.flow->figures : NULL};
     const bool good =
         wh_run_files_are_apart(arguments, layout) && make_segments(arguments, &run->mcs, &segments) &&
         has_flow("--history", arguments->history_path, &run->record) &&
         has_flow("--schedule", arguments->schedule_path, &run->record) &&
-        wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
-        wh_file_write("--schedule", arguments->schedule_path, write_schedule, &history, NULL) &&
+        wh_file_write("--history", plays ? arguments->history_path : NULL, write_history, &history, NULL) &&
+        wh_file_write("--schedule", plays ? arguments->schedule_path : NULL, write_schedule, &history,
+                      NULL) &&
         wh_file_write("--segments", arguments->segments_path, wh_segments_write, &segments, NULL) &&
         write_report(arguments, run, signals);
     wh_segments_free(&segments);

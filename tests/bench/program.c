@@ -302,8 +302,8 @@ int main(int argc, char **argv) {
     count_each("counted, a command", LOOP, 100, 300, 0.9e6);
     /* Two robots, two locks, six modules, all by times alone. */
     time_run_of("flow, 10,000 wafers", FLOW " >/dev/null", 0.2);
-    count_each("flow, a wafer", "tests/bench/flow.lua --brief --set wafers=", 1000, 3000, 80e3);
-    race_simpy("flow, against SimPy", 6);
+    count_each("flow, a wafer", "tests/bench/flow.lua --brief --set wafers=", 1000, 3000, 60e3);
+    race_simpy("flow, against SimPy", 8);
     time_run_of("a week, its page", "build/waferhand run tests/bench/week.lua --report " PAGE " >/dev/null",
                 10);
     time_reading("csv, of the tool's log", "csv -o", 4);

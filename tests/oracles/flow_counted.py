@@ -109,11 +109,14 @@ class Cell:
 
     def fault(self, grippers):
         """One that goes by a gripper, a door, a station or a wafer; most of them last for a while."""
-        gripper, station = self.draw.choice(grippers)["name"], self.draw.choice(self.inner)
+        at, station = self.draw.choice(grippers), self.draw.choice(self.inner)
+        gripper = at["name"]
         kinds = [{"kind": "leak", "gripper": gripper, "value": self.draw.uniform(0, 1)}, {"kind": "no_vacuum", "gripper": gripper},
-                 {"kind": "sensor_on", "gripper": gripper}, {"kind": "sensor_off", "gripper": gripper},
-                 {"kind": "slow_vacuum", "gripper": gripper, "value": self.draw.uniform(0.01, 0.3)},
-                 {"kind": "axis_stopped", "gripper": gripper}, {"kind": "command_lost"}, {"kind": "valve_stuck", "gripper": gripper},
+                 {"kind": "slow_vacuum", "gripper": gripper, "value": self.draw.uniform(0.01, 0.3)}] if "grip" not in at else []
+        kinds += [{"kind": "plunger_stuck", "gripper": gripper}] if at.get("grip") == "edge" else []
+        kinds += [{"kind": "sensor_on", "gripper": gripper}, {"kind": "sensor_off", "gripper": gripper}, {"kind": "valve_stuck", "gripper": gripper}] \
+            if at.get("grip") != "passive" else []
+        kinds += [{"kind": "axis_stopped", "gripper": gripper}, {"kind": "command_lost"},
                  {"kind": "station_stuck", "station": station}, {"kind": "station_slow", "station": station, "value": 3},
                  {"kind": "wafer_shifted", "wafer": "W1", "dx": self.draw.uniform(-1, 1), "dy": self.draw.uniform(-60, 60) * self.draw.choice((0.02, 1))},
                  {"kind": "wafer_missing", "wafer": f"W{self.wafers}"}]
