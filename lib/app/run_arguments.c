@@ -309,19 +309,25 @@ static bool has_flow(const char *option, const char *path, const wh_record_t *re
     return !path || record->flow;
 }
 
+/* Nothing is written of a flow that is not there, which `has_flow` has told. */
+static bool write_flow_files(const wh_run_arguments_t *arguments, const wh_record_t *record) {
+    if (!is_flow_played(record)) {
+        return true;
+    }
+    history_t history = {arguments, &record->flow->figures};
+    return wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
+           wh_file_write("--schedule", arguments->schedule_path, write_schedule, &history, NULL);
+}
+
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {0};
-    const bool plays = is_flow_played(&run->record);
-    history_t history = {arguments, plays ? &run->record.flow->figures : NULL};
     const bool good =
         wh_run_files_are_apart(arguments, layout) && make_segments(arguments, &run->mcs, &segments) &&
         has_flow("--history", arguments->history_path, &run->record) &&
         has_flow("--schedule", arguments->schedule_path, &run->record) &&
-        wh_file_write("--history", plays ? arguments->history_path : NULL, write_history, &history, NULL) &&
-        wh_file_write("--schedule", plays ? arguments->schedule_path : NULL, write_schedule, &history,
-                      NULL) &&
+        write_flow_files(arguments, &run->record) &&
         wh_file_write("--segments", arguments->segments_path, wh_segments_write, &segments, NULL) &&
         write_report(arguments, run, signals);
     wh_segments_free(&segments);

@@ -200,8 +200,8 @@ static bool waits_for_place(const wh_flow_state_t *state, int32_t robot) {
     const wh_flow_robot_state_t *at = &state->robots[robot];
     const wh_flow_order_t *wish = &at->wish;
     return at->action == WH_FLOW_IDLE && at->has_wish && wish->what == WH_FLOW_TRANSFER &&
-           at->kept_out.station == WH_FLOW_NONE && wish->wafer != WH_FLOW_NONE && at->station == wish->at && at->held_us <= state->now_us &&
-           wh_flow_may_take(state, robot, wish->wafer) &&
+           at->kept_out.station == WH_FLOW_NONE && wish->wafer != WH_FLOW_NONE && at->station == wish->at &&
+           at->held_us <= state->now_us && wh_flow_may_take(state, robot, wish->wafer) &&
            wh_flow_takeable_us(state, robot, wish->wafer) <= state->now_us;
 }
 
