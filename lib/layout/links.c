@@ -130,10 +130,11 @@ static bool find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh
     return false;
 }
 
-/* True if the arm stands at these axes already, and its end-effector with it: nothing need be placed. */
+/* True if the arm stands at these axes already, and its end-effector with it: nothing need be placed. The
+ * usual robot has no carrier, and its links follow from the end-effector alone. */
 static bool stands(const wh_links_arm_t *arm, const wh_pose_t *effector, const wh_real_t own[],
-                   size_t count) {
-    return own && memcmp(own, arm->axes, count * sizeof own[0]) == 0 &&
+                   const wh_carrier_t *carrier) {
+    return (!carrier || (own && memcmp(own, arm->axes, carrier->axis_count * sizeof own[0]) == 0)) &&
            wh_arm_is_at(effector, &arm->base_from_effector);
 }
 
@@ -159,7 +160,7 @@ void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose
         const wh_real_t *own = axes ? &axes[first] : NULL;
         wh_pose_t effector = arm->base_from_effector;
         const int32_t g = find_effector(layout, i, base_from_grippers, &effector);
-        if (count > 1 && stands(arm, &effector, own, carrier->axis_count)) {
+        if (stands(arm, &effector, own, carrier)) {
             continue;
         }
         arm->base_from_effector = effector;

@@ -40,7 +40,7 @@ void wh_links_at(wh_links_t *links, const wh_layout_t *layout, const wh_real_t a
  * and the elbow's side unchanged; if there are none, they stay. `axes`, in the machine's order, may be null:
  * not known. `told`, which may be null too, are the poses of all grippers that wh_machine_update made of
  * these axes with the layout's machine: they save the way from axes to end-effector. Cost: that of
- * wh_arm_place_carrier for each arm; with several arms an arm that has not moved costs next to nothing. */
+ * wh_arm_place_carrier for each arm; one that has not moved costs next to nothing. */
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
                      const wh_real_t axes[], const wh_gripper_input_t told[], wh_real_t slack);
 

@@ -138,13 +138,15 @@ static bool is_carried(const wh_signals_t *signals, size_t gripper) {
  * usual robots and chucks. */
 static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
-    if (axes) {
-        wh_machine_grippers(&signals->layout->machine, axes, expected);
-    }
+    bool is_expected = false;
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
-        if (signals->own[g].of > 0 || !axes || is_carried(signals, g) ||
-            !is_at(pose, &expected[g], SAME_MM, SAME_ROTATION)) {
+        const bool has_poses = signals->own[g].of > 0 || !axes || is_carried(signals, g);
+        if (!has_poses && !is_expected) {
+            wh_machine_grippers(&signals->layout->machine, axes, expected);
+            is_expected = true;
+        }
+        if (has_poses || !is_at(pose, &expected[g], SAME_MM, SAME_ROTATION)) {
             wh_thin_add_pose(&signals->own[g], state->seq, pose);
         }
     }
@@ -185,7 +187,10 @@ static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
 static void look_at_wafer(wh_signals_t *signals, const wh_state_t *state, int32_t w, int32_t holder,
                           const wh_pose_t *pose) {
     const wh_stay_t *stay = &signals->stays[signals->stay_of[w]];
-    if (stay->holder != holder || !is_at(&stay->pose, pose, 0, 0)) {
+    /* Most wafers rest with all their bits; a comparison of these is the quickest. */
+    const bool stays = stay->holder == holder &&
+                       (memcmp(&stay->pose, pose, sizeof *pose) == 0 || is_at(&stay->pose, pose, 0, 0));
+    if (!stays) {
         add_stay(signals, state->seq, w, holder, pose);
         for (size_t g = 0; g < state->gripper_count; ++g) {
             signals->vicinity[g].is_known = false;
