@@ -163,11 +163,11 @@ typedef enum {
 /* One thing that took time, told when it has ended, so by the order of the ends. */
 typedef struct {
     wh_flow_event_kind_t kind;
+    wh_flow_side_t side; /* here, the struct has no gaps: long flows keep many of them */
     int64_t begin_us, end_us;
     int32_t robot, arm, wafer, other; /* other: what a swap brought in */
     int32_t place, station, from;     /* from: the station that a move comes from */
     int32_t step;
-    wh_flow_side_t side;
     int64_t stood_us; /* of an action: so long it stood still, since a request held its robot */
 } wh_flow_event_t;
 
