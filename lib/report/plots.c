@@ -254,6 +254,10 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;
     }
+    if (plots->count == 0) {
+        (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "nothing to draw (expected a run that takes time)");
+        return false;
+    }
     bool drawn = true;
     for (size_t i = 0; drawn && i < plots->count; ++i) {
         drawn = draw(plots, plots->names[i], message);
