@@ -108,31 +108,12 @@ static bool lies_in(const wh_cell_t *cell, const wh_station_t *station, const wh
            wh_vec3_dot(&n1, &slot_normal) > cell->tolerance.planar;
 }
 
-/* A wafer that is this much farther from a station's axis than the tolerance, mm, lies in none of its slots,
- * whichever face is looked at and however the numbers are rounded. */
-#define BESIDE 1
-
-/* A squared distance is off by less than this share of it: rotations and rounding. */
-#define BLUR (8 * WH_ROTATION_TOLERANCE)
-
-/* True if the wafer is clearly too far aside to lie in the station: most stations are. */
-static bool is_beside(const wh_cell_t *cell, const wh_station_t *station, const wh_pose_t *base_from_wafer) {
-    const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);
-    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &station->base_from_station.r);
-    const wh_real_t height = wh_vec3_dot(&dr, &up), square = wh_vec3_dot(&dr, &dr);
-    const wh_real_t most = cell->tolerance.projxy + cell->thickness + BESIDE;
-    return square - height * height - BLUR * square > most * most;
-}
-
 bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place) {
     wh_real_t best = 0;
     bool found = false;
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         wh_pose_t room;
-        if (is_beside(cell, station, base_from_wafer)) {
-            continue;
-        }
         const wh_face_t face = face_seen(cell, station, base_from_wafer, &room);
         const wh_pose_t *seen = face == WH_FACE_BACK ? base_from_wafer : &room;
         const int32_t slot = nearest_slot_of(station, seen);

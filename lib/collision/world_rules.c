@@ -101,12 +101,36 @@ static bool may_lie_in(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, 
                : support->kind == WH_PART_CHUCK && may_lie_on(cell, base_from_wafer, support->owner);
 }
 
+/* wh_cell_locate, which asks no station that the wafer is beside: most of them. */
+static bool locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place) {
+    wh_cell_t alone = *cell;
+    wh_real_t best = 0;
+    bool found = false;
+    for (size_t s = 0; s < cell->count; ++s) {
+        wh_place_t here;
+        alone.stations = &cell->stations[s];
+        alone.count = 1;
+        if (is_beside(cell, alone.stations, base_from_wafer) ||
+            !wh_cell_locate(&alone, base_from_wafer, &here)) {
+            continue;
+        }
+        const wh_real_t square = here.dx * here.dx + here.dy * here.dy + here.dz * here.dz;
+        if (!found || square < best) {
+            *place = here;
+            place->station = (int32_t)s;
+            best = square;
+            found = true;
+        }
+    }
+    return found;
+}
+
 /* True if a wafer at this pose lies in the ledge's slot, or on the gripper's chuck, and not below its
  * plane. */
 static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
-    if (!may_lie_in(cell, base_from_wafer, support) || !wh_cell_locate(cell, base_from_wafer, &place) ||
+    if (!may_lie_in(cell, base_from_wafer, support) || !locate(cell, base_from_wafer, &place) ||
         place.dz < -cell->tolerance.projz) {
         return false;
     }
