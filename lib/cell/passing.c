@@ -122,20 +122,11 @@ static WH_OUT_OF_LINE bool goes_through(const wh_cell_t *cell, const wh_grasp_t 
     return wh_cell_passes(cell, gripper, base_from_wafer, &next, passing);
 }
 
-static bool is_upright(const wh_station_t *station) {
-    const wh_mat3_t *R = &station->base_from_station.R;
-    return R->m[0][2] == 0 && R->m[1][2] == 0;
-}
-
 /* False if no back face passes a slot, wherever it is beside it: what most slices are. */
 static bool may_pass(const wh_cell_t *cell, const wh_vec3_t *from, const wh_vec3_t *to) {
-    const bool is_level = from->z == to->z;
     bool may = cell->thickness > 0;
     for (size_t s = 0; s < cell->count && !may; ++s) {
         const wh_station_t *station = &cell->stations[s];
-        if (is_level && is_upright(station)) {
-            continue; /* both heights are one */
-        }
         const counts_t counts = count_on_way(cell, station, height_of(station, from), height_of(station, to));
         may = counts.before != counts.after;
     }
