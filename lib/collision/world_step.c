@@ -130,7 +130,7 @@ static void judge_pairs(const wh_look_t *look) {
     const wh_world_t *world = look->world;
     for (size_t block = 0; block < wh_world_blocks(world->pair_count); ++block) {
         if (!(world->due.gone < world->due.soonest[block])) {
-            double *const due = &world->due.of[block * WH_WORLD_BLOCK];
+            double *const due = world->due.of + block * WH_WORLD_BLOCK;
             judge_block(look, block * WH_WORLD_BLOCK, due);
             world->due.soonest[block] = least_of(due);
         }

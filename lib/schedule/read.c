@@ -134,13 +134,14 @@ static bool take_action(wh_schedule_reader_t *reader, const wh_schedule_cell_t *
 }
 
 static bool take_side(wh_schedule_reader_t *reader, const wh_schedule_cell_t *cell, wh_flow_side_t *side) {
+    const char *text = cell->text ? cell->text : "";
     *side = WH_FLOW_BOTH;
     if (is_empty(cell)) {
         return true;
     }
-    if (!cell->is_number && strcmp(cell->text, "vacuum") == 0) {
+    if (!cell->is_number && strcmp(text, "vacuum") == 0) {
         *side = WH_FLOW_VACUUM;
-    } else if (!cell->is_number && strcmp(cell->text, "atmosphere") == 0) {
+    } else if (!cell->is_number && strcmp(text, "atmosphere") == 0) {
         *side = WH_FLOW_ATMOSPHERE;
     } else {
         return refuse_cell(reader, WH_SCHEDULE_VALUE, cell, "vacuum or atmosphere");

@@ -11,7 +11,7 @@
  * a function of yours that gives names is added):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_grasp_text                   224    232     224    232
- *     stack of wh_grasp_difference             448    456     376    376
+ *     stack of wh_grasp_difference             464    472     392    392
  */
 #ifndef WH_SIM_GRASP_TEXT_H
 #define WH_SIM_GRASP_TEXT_H
