@@ -120,6 +120,8 @@ static void call_grips(void) {
     other.x = x;
     other.y = x;
     other.notch_x = x;
+    (void)wh_edge_validate(any_bool() ? &edge : NULL);
+    (void)wh_edge_wafer_validate(any_bool() ? &edge : NULL, any_bool() ? &lies : NULL);
     (void)wh_edge_at(any_bool() ? &edge : NULL, any_bool() ? &lies : NULL, x, &place);
     (void)wh_edge_at(&some, &other, x, &place);
     (void)wh_edge_meets_notch(&other, x, x);
