@@ -110,6 +110,9 @@ static void call_grips(void) {
     (void)wh_passive_step(&passive, &axis, &gripper, any_bool() ? &axis : NULL, any_bool() ? &lying : NULL,
                           any_bool() ? &change : NULL);
     (void)wh_passive_limit(&pads, &axis.R);
+}
+
+static void call_edges(void) {
     const double x = real;
     const wh_edge_t edge = {x, x, x, x, x, x, x, x, x, x};
     const wh_edge_wafer_t lies = {x, x, x, x, x, x, x, x};
@@ -401,6 +404,7 @@ int main(void) {
 #else
     call_names();
     call_grips();
+    call_edges();
     call_values();
     call_proximity();
     call_vacuum();
