@@ -2,15 +2,14 @@
 
 #include "../math/trig.h"
 
+/* It ends at the first number that differs: most bodies that are asked for move. */
 bool wh_arm_is_at(const wh_pose_t *body, const wh_pose_t *base_from_body) {
-    const wh_vec3_t off = wh_vec3_subtract(&body->r, &base_from_body->r);
-    wh_real_t apart = wh_real_abs(off.x) + wh_real_abs(off.y) + wh_real_abs(off.z);
-    for (size_t row = 0; apart <= 0 && row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column) {
-            apart += wh_real_abs(body->R.m[row][column] - base_from_body->R.m[row][column]);
-        }
+    const wh_vec3_t *a = &body->r, *b = &base_from_body->r;
+    bool same = a->x == b->x && a->y == b->y && a->z == b->z;
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = body->R.m[i / 3][i % 3] == base_from_body->R.m[i / 3][i % 3];
     }
-    return apart <= 0;
+    return same;
 }
 
 static wh_vec3_t wrist_of(const wh_arm_t *arm, const wh_pose_t *base_from_effector) {

@@ -55,17 +55,8 @@ static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
     return wh_vec3_norm(&change);
 }
 
-/* wh_arm_is_at, which ends at the first number that differs: most bodies that are asked for move. */
-static bool is_at(const wh_pose_t *a, const wh_pose_t *b) {
-    bool same = a->r.x == b->r.x && a->r.y == b->r.y && a->r.z == b->r.z;
-    for (size_t i = 0; same && i < 9; ++i) {
-        same = a->R.m[i / 3][i % 3] == b->R.m[i / 3][i % 3];
-    }
-    return same;
-}
-
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
-    const bool stands = is_at(&body->now, now);
+    const bool stands = wh_arm_is_at(&body->now, now);
     if (stands && !body->has_gone) {
         return;
     }

@@ -154,10 +154,9 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
 }
 
 void wh_mcs_clocks_look(const wh_mcs_t *mcs, int32_t station) {
-    struct wh_clocks *clocks = mcs->clocks;
-    const int32_t number = clocks ? clocks->by_station[station] : WH_NONE;
+    const int32_t number = wh_clocks_find(mcs, station);
     if (number != WH_NONE) {
-        look(clocks, (size_t)number, &mcs->state, WH_NONE);
+        look(mcs->clocks, (size_t)number, &mcs->state, WH_NONE);
     }
 }
 

@@ -187,7 +187,7 @@ void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t 
     const int32_t station = played->tool->place_stations[place];
     const int32_t next = wh_flow_next_step(state, wafer);
     const int64_t own_us = wh_flow_step_of(&played->flow->plan, wafer, next)->process_us;
-    const int32_t number = clocks ? clocks->by_station[station] : WH_NONE;
+    const int32_t number = wh_clocks_find(played->mcs, station);
     if (number == WH_NONE) {
         return;
     }
