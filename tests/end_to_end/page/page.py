@@ -108,8 +108,15 @@ class Stream:
     """A reader of the feed; `told` are (number, kind, object)."""
 
     def __init__(self, served, document, reads=True):
-        """After what a document of the server says; {}: from nowhere."""
-        self.socket = socket.create_connection(("127.0.0.1", served.port()), 20)
+        """After what a document of the server says; {}: from nowhere. Without `reads` nobody reads it until wake(), and the buffers
+        between are as small as they can be: some 40 kB fill them."""
+        self.socket = socket.socket()
+        self.socket.settimeout(20)
+        if not reads:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
+            self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_MAXSEG, 88)
+        self.socket.connect(("127.0.0.1", served.port()))
+        self.served = served
         request = f"GET /stream?from={document.get('next', 0)}&id={document.get('id', '')} HTTP/1.1\r\nHost: {served.place}\r\n\r\n"
         self.socket.sendall(request.encode())
         self.told = []
@@ -118,6 +125,18 @@ class Stream:
         self.thread = threading.Thread(target=self.read, daemon=True)
         if reads:
             self.thread.start()
+
+    def at_server(self):
+        """(whether the server keeps the connection, the bytes that it has written and that the other end has no room for)"""
+        ends = [f":{port:04X}" for port in (self.served.port(), self.socket.getsockname()[1])]
+        for line in pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]:
+            _, here, there, state, queues = line.split()[:5]
+            if here.endswith(ends[0]) and there.endswith(ends[1]):
+                return state == "01", int(queues.split(":")[0], 16)
+        return False, 0
+
+    def wake(self):
+        self.thread.start()
 
     def read(self):
         head = True
@@ -158,6 +177,11 @@ class Stream:
 
     def close(self):
         self.socket.close()
+
+
+def resident(process):
+    """Bytes of memory."""
+    return int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 def processor(process):

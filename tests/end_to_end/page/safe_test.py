@@ -119,9 +119,10 @@ class Safe(unittest.TestCase):
         self.assertLess(waited, 45)
         self.assertEqual(self.status(), 200)
 
-    def test_slow_head(self):
-        """A head that comes byte by byte is given some seconds in all."""
+    def test_slow_clients(self):
+        """A head that comes byte by byte is given some seconds in all; so is a page that does not read, once nothing more goes to it."""
         begun = time.monotonic()
+        asleep = page.Stream(self.served, self.served.document(), reads=False)
         with socket.create_connection(("127.0.0.1", self.served.port()), 20) as line:
             line.settimeout(0.5)
             ended = False
@@ -136,6 +137,10 @@ class Safe(unittest.TestCase):
                     ended = True
         self.assertTrue(ended)
         self.assertLess(time.monotonic() - begun, 15)
+        while asleep.at_server()[0] and time.monotonic() - begun < 60:
+            time.sleep(0.1)
+        self.assertEqual([asleep.at_server()[0], asleep.at_server()[1] > 0], [False, True])
+        asleep.close()
 
     def test_streams_are_counted(self):
         """As many as there may be; the next is told so."""
