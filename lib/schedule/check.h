@@ -1,7 +1,8 @@
 /* Holds a schedule against the rules that no tool can break, and says which of them it has looked at.
  *
- * All rows are taken in the order of time. At one instant what ends goes first. A process, a clean or a pump
- * without a row of its own is taken to begin as soon as it can. After a finding it goes on as if the row were
+ * All rows are taken in the order of time. At one instant what ends goes first. A process or a pump
+ * without a row of its own is taken to begin as soon as it can, and so is a clean in a schedule that has no
+ * row of any clean. After a finding it goes on as if the row were
  * right. */
 #ifndef WH_SCHEDULE_CHECK_H
 #define WH_SCHEDULE_CHECK_H

@@ -132,7 +132,7 @@ static void note_row(wh_schedule_state_t *check, int32_t row) {
         check->robots[of->robot].tells_arms = false;
     }
     check->stations[of->station].has_pumps |= of->action == WH_SCHEDULE_PUMP;
-    check->stations[of->station].has_cleans |= of->action == WH_SCHEDULE_CLEAN;
+    check->has_cleans |= of->action == WH_SCHEDULE_CLEAN;
     if (!wh_schedule_is_instant(of->action) && of->end_us > check->report->end_us) {
         check->report->end_us = of->end_us;
     }

@@ -51,8 +51,8 @@ typedef struct {
     wh_flow_side_t side;
     int64_t pump_us, access_us; /* the ends of what runs */
     int32_t pump_row, access_row;
-    bool has_pumps, has_cleans; /* rows of its own */
-    int32_t slots;              /* of which rows tell */
+    bool has_pumps; /* rows of its own */
+    int32_t slots;  /* of which rows tell */
 } wh_check_station_t;
 
 typedef struct {
@@ -83,6 +83,7 @@ typedef struct {
     wh_check_robot_t *robots;
     wh_check_door_t *doors; /* by station, then by key */
     size_t door_count;
+    bool has_cleans;        /* rows of them: each that is due then has one */
     size_t doors_from_open; /* that shut first, in a schedule that does not say how it begins */
 } wh_schedule_state_t;
 

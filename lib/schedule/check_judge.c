@@ -111,8 +111,11 @@ static void judge_times(wh_schedule_state_t *check, const facts_t *facts) {
 }
 
 static void judge_cleans(wh_schedule_state_t *check, const facts_t *facts) {
-    if (facts->has_cleans) {
+    if (facts->has_cleans && check->has_cleans) {
         judge(check, WH_SCHEDULE_RULE_CLEAN, true, NULL);
+    } else if (facts->has_cleans) {
+        judge(check, WH_SCHEDULE_RULE_CLEAN, true,
+              "by time alone: no clean in the schedule, so each that is due counts where it would fit");
     } else if (facts->rows[WH_SCHEDULE_CLEAN] > 0) {
         judge(check, WH_SCHEDULE_RULE_CLEAN, true, "places during cleans alone: %s",
               check->tool ? "the layout has no clean" : "no layout");

@@ -188,7 +188,7 @@ static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check
     }
     const int32_t after = wh_flow_treatment(station, place->recipe).clean_after;
     place->since = -1; /* this wafer leaves behind it */
-    if (check->stations[of->station].has_cleans) {
+    if (check->has_cleans) {
         if (place->cleaned_us < wafer->placed_us) {
             wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, WH_CHECK_NO_ROW,
                            "begin_s: %.10g (expected a clean before: one is due behind %d %s)",
@@ -269,8 +269,8 @@ void wh_check_enter(wh_schedule_state_t *check, int32_t row, int32_t leaving) {
         return;
     }
     place->since = 0;
-    const bool is_implied = !check->stations[of->station].has_cleans &&
-                            !wh_check_is_behind(due_us + station->clean_us, of->begin_us);
+    const bool is_implied =
+        !check->has_cleans && !wh_check_is_behind(due_us + station->clean_us, of->begin_us);
     if (!is_implied) {
         wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, WH_CHECK_NO_ROW,
                        "begin_s: %.10g (expected a clean of %.10g s before: one is due since %.10g)",

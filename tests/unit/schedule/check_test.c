@@ -99,7 +99,8 @@ static void a_clean_around_the_wafer(void **unused) {
     }
 }
 
-/* Without a wafer for 20 s, M is cleaned before the next one. */
+/* Without a wafer for 20 s, M is cleaned before the next one. A schedule of no clean is judged by time alone, which is
+ * said; in one of any clean each that is due needs its row. */
 static void a_clean_for_want_of_wafers(void **unused) {
     (void)unused;
     const double places_s[] = {19, 25, 31};
@@ -113,6 +114,12 @@ static void a_clean_for_want_of_wafers(void **unused) {
         open_case(&of);
         carry(&of, "W", "A", "M", 0, places_s[i]);
         assert_int_equal(judge(&of, &flow.tool), i == 1 ? 1U << WH_SCHEDULE_RULE_CLEAN : 0);
+        assert_non_null(strstr(of.report.rules[WH_SCHEDULE_RULE_CLEAN].but, "by time alone"));
+        close_case(&of);
+        open_case(&of);
+        carry(&of, "W", "A", "M", 0, places_s[i]);
+        (void)add(&of, "-", WH_SCHEDULE_CLEAN, "-", "B", 1, 2);
+        assert_int_equal(judge(&of, &flow.tool), i > 0 ? 1U << WH_SCHEDULE_RULE_CLEAN : 0);
         close_case(&of);
         flow_close(&flow);
     }
