@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "longest.h"
 
 static void close_names(wh_flow_names_t *names) {
     for (size_t i = 0; i < names->count; ++i) {
@@ -333,5 +334,6 @@ char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
         }
     }
     find_calls(plan, tool);
-    return check_ports(plan, tool);
+    char *problem = check_ports(plan, tool);
+    return problem ? problem : wh_flow_check_longest(plan, tool);
 }
