@@ -262,7 +262,8 @@ static int open_words(lua_State *L) {
         wh_mcs_lane_functions,      wh_mcs_job_functions,         wh_mcs_believed_functions,
         wh_mcs_flow_functions,      wh_mcs_flow_played_functions, wh_mcs_flow_timed_functions,
         wh_mcs_flow_call_functions, wh_mcs_own_functions,         wh_mcs_clock_functions,
-        wh_mcs_clock_questions,     wh_mcs_port_functions,        wh_mcs_controller_functions};
+        wh_mcs_clock_questions,     wh_mcs_port_functions,        wh_mcs_controller_functions,
+        wh_mcs_kind_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);

@@ -129,6 +129,7 @@ extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_edge_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_job_functions[];
+extern const luaL_Reg wh_mcs_kind_functions[];
 extern const luaL_Reg wh_mcs_lane_functions[];
 extern const luaL_Reg wh_mcs_own_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];

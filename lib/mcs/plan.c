@@ -377,6 +377,7 @@ static int rehearse_segments(lua_State *L) {
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
     if (lua_toboolean(L, 1)) {
         wh_rehearsal_begin(&mcs->rehearsal, &mcs->track, lua_toboolean(L, 2) != 0);
+        mcs->rehearsal.spent = wh_sandbox_spent(mcs->sandbox);
     }
     return 0;
 }

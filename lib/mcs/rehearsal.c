@@ -24,6 +24,13 @@ void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned) {
     rehearsal->planned.segments[rehearsal->planned.count++] = *planned;
 }
 
+void wh_rehearsal_take(wh_rehearsal_t *rehearsal, const wh_planned_t planned[], size_t count) {
+    rehearsal->planned.count = 0;
+    for (size_t i = 0; i < count; ++i) {
+        wh_rehearsal_add(rehearsal, &planned[i]);
+    }
+}
+
 void wh_rehearsal_end(wh_rehearsal_t *rehearsal, wh_track_t *track) {
     if (rehearsal->is_on) {
         *track = rehearsal->kept;

@@ -78,6 +78,7 @@ typedef struct {
     bool is_on;             /* segments are planned, not played */
     bool is_judged;         /* and checked for collisions */
     wh_track_t kept;        /* the track before the rehearsal */
+    uint64_t spent;         /* of the budget, before the last rehearsal */
     wh_plan_list_t planned; /* of the last rehearsal, in order */
     wh_look_ahead_t *look_ahead;
     void *look_ahead_user;
@@ -91,6 +92,9 @@ void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool
 
 /* Keeps a planned segment. Ends the program if out of memory. */
 void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
+
+/* Takes the segments of an earlier rehearsal for those of the last one. Ends the program if out of memory. */
+void wh_rehearsal_take(wh_rehearsal_t *rehearsal, const wh_planned_t planned[], size_t count);
 
 /* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if
  * asked for. */

@@ -27,7 +27,8 @@ return function(native, wh)
   local task_words, finish = make("task_words", native, lookup, tasks)
   local arm = make("arm", native, lookup, tasks, alarms)
   local ways = make("ways", native, arm, tasks)
-  local player = make("player", native, lookup, arm, ways, centring, tasks, alarms)
+  local kinds = make("kinds", native, patterns, arm, tasks)
+  local player = make("player", native, lookup, arm, ways, centring, tasks, alarms, kinds)
 
   -- These were made before the ones that know the answers.
   function lookup.bound()

@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local coroutine, error, ipairs, next, pairs, pcall, type = coroutine, error, ipairs, next, pairs, pcall, type
 
-return function(native, lookup, arm, ways, centring, tasks, alarms)
+return function(native, lookup, arm, ways, centring, tasks, alarms, kinds)
   local player = {}
 
   -- The answer to a pattern while it is only planned: a segment runs to its end, a question has its own
@@ -105,7 +105,15 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
     for _, part in ipairs({ target, target.get, target.put }) do
       part.asked = {} -- see lua/mcs/own_patterns.lua
     end
-    return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
+    local known = judged and kinds.find(pattern, target)
+    if known then
+      return known
+    end
+    local plan = plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
+    if judged then
+      kinds.keep(plan)
+    end
+    return plan
   end
 
   -- The state of an edge grip's plunger. A target keeps the first state that is not the expected "open".
