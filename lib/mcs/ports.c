@@ -235,6 +235,17 @@ bool wh_ports_is_idle(const struct wh_ports *ports, int32_t number) {
     return port->clock.step == WH_LOAD_PORT_STANDS && !(is_free(port) && find_due(ports, number) != WH_NONE);
 }
 
+wh_load_port_t wh_ports_coming(const struct wh_ports *ports, int32_t number, int64_t now_us) {
+    static const wh_load_port_teller_t nobody = {NULL, NULL};
+    const wh_load_port_now_t *port = &ports->ports[number];
+    const int32_t due = is_free(port) ? find_due(ports, number) : WH_NONE;
+    wh_load_port_t next = port->clock;
+    if (due != WH_NONE && ports->carriers[due].comes_us <= now_us) {
+        wh_load_port_bring(&ports->of[number].of, &next, now_us, &nobody);
+    }
+    return next;
+}
+
 double wh_ports_quiet_us(const struct wh_ports *ports, int64_t now_us) {
     double us = ports->state->order_count > 0 ? 0 : (double)INFINITY;
     for (size_t i = 0; i < ports->count; ++i) {

@@ -89,6 +89,9 @@ void wh_ports_pass(struct wh_ports *ports, int64_t us, int64_t now_us);
 /* The number of a station's port; WH_NONE: it is none. */
 int32_t wh_ports_find(const wh_mcs_t *mcs, int32_t station);
 
+/* The port's clock, with the carrier that comes to it: one whose time has come begins with the next slice. */
+wh_load_port_t wh_ports_coming(const struct wh_ports *ports, int32_t number, int64_t now_us);
+
 /* True if nothing runs at the port, and no carrier is to come to it while it is free. */
 bool wh_ports_is_idle(const struct wh_ports *ports, int32_t number);
 

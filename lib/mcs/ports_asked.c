@@ -11,7 +11,11 @@
 
 bool wh_mcs_does_port_stand(const wh_mcs_t *mcs, int32_t station) {
     const int32_t number = wh_ports_find(mcs, station);
-    return number == WH_NONE || mcs->clocks->ports->ports[number].clock.step == WH_LOAD_PORT_STANDS;
+    if (number == WH_NONE) {
+        return true;
+    }
+    const wh_load_port_t clock = wh_ports_coming(mcs->clocks->ports, number, mcs->clocks->state->utime);
+    return clock.step == WH_LOAD_PORT_STANDS;
 }
 
 bool wh_mcs_see_load_port(const wh_mcs_t *mcs, size_t station, wh_mcs_load_port_t *seen) {
@@ -52,8 +56,9 @@ static void push_name_or_nil(lua_State *L, const char *name, bool is_there) {
     }
 }
 
-/* native.port(station): nothing if it is no load port; else its state, the step that runs or nil, s that it
- * needs yet by the description, its carrier or nil, and the step that ended its last handshake or nil. */
+/* native.port(station): nothing if it is no load port; else its state, the step that runs, or begins with the
+ * next slice, or nil, s that it needs yet by the description, its carrier or nil, and the step that ended its
+ * last handshake or nil. */
 static int read_port(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t number = port_argument(L, mcs, 1);
@@ -62,13 +67,13 @@ static int read_port(lua_State *L) {
     }
     const struct wh_ports *ports = mcs->clocks->ports;
     const wh_load_port_now_t *port = &ports->ports[number];
-    const wh_load_port_t *clock = &port->clock;
+    const wh_load_port_t clock = wh_ports_coming(ports, number, mcs->clocks->state->utime);
     const bool has = port->carrier != WH_NONE;
-    lua_pushstring(L, wh_load_port_state_name(clock->is));
-    push_name_or_nil(L, wh_load_port_step_name(clock->step), clock->step != WH_LOAD_PORT_STANDS);
-    lua_pushnumber(L, wh_load_port_left_us(&ports->of[number].of, clock) / 1e6);
+    lua_pushstring(L, wh_load_port_state_name(clock.is));
+    push_name_or_nil(L, wh_load_port_step_name(clock.step), clock.step != WH_LOAD_PORT_STANDS);
+    lua_pushnumber(L, wh_load_port_left_us(&ports->of[number].of, &clock) / 1e6);
     push_name_or_nil(L, has ? mcs->layout->carriers[port->carrier].name : NULL, has);
-    push_name_or_nil(L, wh_load_port_step_name(clock->failed), clock->failed != WH_LOAD_PORT_STANDS);
+    push_name_or_nil(L, wh_load_port_step_name(clock.failed), clock.failed != WH_LOAD_PORT_STANDS);
     return 5;
 }
 

@@ -54,8 +54,9 @@ return function(native, patterns, lookup, arm, player, slot_map)
     end
     if not native.is_port_open(station.index) then
       local state, step = native.port(station.index)
-      local hint = state == "absent" and not step and ('carrier("%s") brings one'):format(name)
-        or step and ('wait_for("%s") comes first'):format(name) or ('port("%s", "open") comes first'):format(name)
+      local waits = step or state == "absent" and native.rest(station.index)
+      local hint = state == "absent" and not waits and ('carrier("%s") brings one'):format(name)
+        or waits and ('wait_for("%s") comes first'):format(name) or ('port("%s", "open") comes first'):format(name)
       native.fail("PORT_NOT_OPEN", ("%s (expected open or mapped: %s)"):format(how_is(name, station.index), hint))
     end
     take_map(name, station.index)
@@ -252,20 +253,24 @@ return function(native, patterns, lookup, arm, player, slot_map)
     end
   end
 
+  -- A carrier whose time is still to come is waited for by WAIT_FOR alone.
+  local function fail_absent(station)
+    local first = native.rest(station.index) and "a carrier is to come: wait_for" or "carrier"
+    native.fail("NO_CARRIER", ('%s is absent: %s("%s") comes first'):format(station.name, first, station.name))
+  end
+
   local function send(station, state)
     check_empty(station)
-    if native.port(station.index) == "absent" then
-      local _, step = native.port(station.index)
-      if not step then
-        native.fail("NO_CARRIER", ('%s is absent: carrier("%s") comes first'):format(station.name, station.name))
-      end
+    local is, step = native.port(station.index)
+    if is == "absent" and not step then
+      fail_absent(station)
     end
-    if select(2, native.port(station.index)) then
+    if step then
       await(station)
       fail_if_timed_out(station.name, station.index)
     end
     if not native.send_port(station.index, state) then
-      native.fail("NO_CARRIER", ('%s is absent: carrier("%s") comes first'):format(station.name, station.name))
+      fail_absent(station)
     end
     await(station)
     fail_if_timed_out(station.name, station.index)

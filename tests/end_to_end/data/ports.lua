@@ -51,6 +51,10 @@ function cases.states()
   put("LP2", 3)
   port("LP2", "placed")
   near(port_map("LP2")[3], 0)
+  -- One that comes now begins with the next slice: the port waits for it, though nothing else takes time before.
+  take_away "LP2"
+  carrier("LP2", { name = "C2" })
+  port("LP2", "clamped")
 end
 
 -- A carrier that comes late, by vehicle; what lies in it goes with it, and comes again.
