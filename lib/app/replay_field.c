@@ -99,12 +99,29 @@ static void hear(void *user, int64_t utime, const char *text, bool is_complaint)
 
 /* ------------------------------------------------------------------------------------------------ verdict */
 
+/* Writes that a text of the map is in no row: it may be a wrong one. Nothing if there is none. */
+static void write_never_on(const replay_t *replay, char *text, size_t size) {
+    size_t gripper;
+    bool is_sensor;
+    const wh_field_source_t *source = wh_field_find_never_on(&replay->field, &gripper, &is_sensor);
+    text[0] = '\0';
+    if (source) {
+        (void)snprintf(
+            text, size,
+            "the %s of %s: no row of %s says %s (expected the map's `off` as well, or another `on`)",
+            is_sensor ? "sensor" : "valve", replay->field.layout->grippers[gripper].name,
+            replay->field.names[source->column], source->on);
+    }
+}
+
 /* Writes why the log is not as the cell has it. */
 static int judge(const replay_t *replay, char *reason, size_t size) {
     const wh_field_run_t *run = &replay->run;
     const wh_plant_found_t *found = &replay->plant.found;
     const size_t sensor = wh_field_first_sensor(run);
     const bool has_sensor = sensor < replay->field.layout->machine.gripper_count;
+    size_t gripper;
+    bool is_sensor;
     reason[0] = '\0';
     if (found->refused > 0) {
         (void)snprintf(reason, size, "the layout's machine cannot be where the log's is: line %zu: %s",
@@ -124,6 +141,9 @@ static int judge(const replay_t *replay, char *reason, size_t size) {
         return INCOMPLETE;
     } else if (replay->field.has_sensors == 0) {
         (void)snprintf(reason, size, "the log has no sensor that could be compared");
+        return INCOMPLETE;
+    } else if (wh_field_find_never_on(&replay->field, &gripper, &is_sensor)) {
+        write_never_on(replay, reason, size);
         return INCOMPLETE;
     }
     return reason[0] == '\0' ? SAME : DIFFERS;
@@ -157,6 +177,11 @@ static void print_unlooked(const replay_t *replay) {
         printf("%" PRIu64
                " row%s between two slices: their axes were not played (expected a shorter slice)\n",
                run->between, WH_PLURAL(run->between));
+    }
+    char never_on[400];
+    write_never_on(replay, never_on, sizeof never_on);
+    if (never_on[0] != '\0') {
+        puts(never_on);
     }
     if (!replay->field.layout->collision) {
         puts("collisions were not looked for: the layout has no collision = true");

@@ -51,10 +51,36 @@ static bool refuse_value(wh_field_log_t *field, size_t column, const char *expec
     return false;
 }
 
+/* A number as the log writes it: with a point, or with a comma and no point. */
+static bool read_number(const wh_field_log_t *field, char *text, double *number) {
+    char *comma = field->has_commas ? strchr(text, ',') : NULL;
+    if (field->has_commas && strchr(text, '.')) {
+        return false;
+    }
+    if (comma) {
+        *comma = '.';
+    }
+    const bool good = wh_rows_number(text, -1e300, 1e300, number);
+    if (comma) {
+        *comma = ','; /* a message shows it as it stands */
+    }
+    return good;
+}
+
+static bool refuse_number(wh_field_log_t *field, size_t column) {
+    const char *text = field->rows.fields[column];
+    const bool may_be_comma =
+        !field->has_commas && strspn(text, "+-0123456789,") == strlen(text) && strchr(text, ',');
+    return refuse_value(field, column,
+                        may_be_comma        ? "a number; with decimal = \",\" in a map a comma is its point"
+                        : field->has_commas ? "a number with a comma, as the map's `decimal` says"
+                                            : "a number");
+}
+
 static bool take_number(wh_field_log_t *field, const wh_field_source_t *source, double most, double *number) {
     double read = 0;
-    if (!source->is_constant && !wh_rows_number(field->rows.fields[source->column], -1e300, 1e300, &read)) {
-        return refuse_value(field, source->column, "a number");
+    if (!source->is_constant && !read_number(field, field->rows.fields[source->column], &read)) {
+        return refuse_number(field, source->column);
     }
     *number = source->is_constant ? source->offset : read * source->scale + source->offset;
     if (!(fabs(*number) <= most)) {
@@ -76,12 +102,27 @@ static bool take_axis(wh_field_log_t *field, size_t axis) {
     return true;
 }
 
+/* A text that says on or off. */
+static bool take_text(wh_field_log_t *field, wh_field_source_t *source, bool *is_on) {
+    const char *text = field->rows.fields[source->column];
+    *is_on = strcmp(text, source->on) == 0;
+    source->has_been_on = source->has_been_on || *is_on;
+    if (*is_on || source->off[0] == '\0' || strcmp(text, source->off) == 0) {
+        return true;
+    }
+    char expected[2 * WH_FIELD_ON + 40];
+    (void)snprintf(expected, sizeof expected, "%s or %s, the map's `on` and `off`", source->on, source->off);
+    return refuse_value(field, source->column, expected);
+}
+
 /* Sets bit `bit` if the source says on. */
-static bool take_bit(wh_field_log_t *field, const wh_field_source_t *source, size_t bit, uint32_t *bits) {
+static bool take_bit(wh_field_log_t *field, wh_field_source_t *source, size_t bit, uint32_t *bits) {
     bool is_on = source->offset != 0;
     double number = 0;
     if (!source->is_constant && source->on[0] != '\0') {
-        is_on = strcmp(field->rows.fields[source->column], source->on) == 0;
+        if (!take_text(field, source, &is_on)) {
+            return false;
+        }
     } else if (!source->is_constant) {
         if (!wh_rows_number(field->rows.fields[source->column], 0, 1, &number) ||
             (number != 0 && number != 1)) {
@@ -139,6 +180,24 @@ bool wh_field_read(wh_field_log_t *field) {
     }
     field->line = field->rows.line;
     return good && take_bits(field);
+}
+
+static bool was_never_on(const wh_field_source_t *source) {
+    return source->on[0] != '\0' && source->off[0] == '\0' && !source->has_been_on;
+}
+
+const wh_field_source_t *wh_field_find_never_on(const wh_field_log_t *field, size_t *gripper,
+                                                bool *is_sensor) {
+    for (*gripper = 0; *gripper < field->layout->machine.gripper_count; ++*gripper) {
+        const wh_field_source_t *both[] = {&field->valves[*gripper], &field->sensors[*gripper]};
+        for (size_t i = 0; i < 2; ++i) {
+            if (was_never_on(both[i])) {
+                *is_sensor = i == 1;
+                return both[i];
+            }
+        }
+    }
+    return NULL;
 }
 
 void wh_field_close(wh_field_log_t *field) {

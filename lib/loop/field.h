@@ -4,7 +4,7 @@
  * those of `waferhand csv`. A map, a Lua file, gives them other names:
  *
  *     return {
- *       separator = ";",
+ *       separator = ";", decimal = ",",
  *       time = { "t_ms", scale = 1e-3 },
  *       axes = { theta = { "J1", unit = "rad" }, r = { "J2", scale = 0.001 }, z = "J3", yaw = 0 },
  *       valves = { EE = { "vac_out", on = "1" }, PA = false },
@@ -37,14 +37,17 @@ typedef struct {
     bool is_angle_in_rad; /* of an axis */
     size_t column;
     double scale, offset;
-    char on[WH_FIELD_ON]; /* of a valve or sensor: the text that says on; empty: any number but 0 */
-    bool is_turned;       /* that text, or number, says off instead */
+    char on[WH_FIELD_ON];  /* of a valve or sensor: the text that says on; empty: any number but 0 */
+    char off[WH_FIELD_ON]; /* the text that says off; empty: any other */
+    bool has_been_on;
+    bool is_turned; /* that text, or number, says off instead */
 } wh_field_source_t;
 
 /* Zero it to begin with; it must not be moved once opened. */
 typedef struct {
     const wh_layout_t *layout;
     const char *path, *map; /* map: null: the columns of `csv` */
+    bool has_commas;        /* a number's point is a comma */
     wh_rows_t rows;
     char *names[WH_ROWS_FIELDS]; /* of the columns */
     size_t column_count, ignored;
@@ -66,6 +69,11 @@ bool wh_field_open(wh_field_log_t *field, const char *path, const char *map, con
 
 /* Reads the next row. False at the end, or with a message. Times must grow from row to row. */
 bool wh_field_read(wh_field_log_t *field);
+
+/* A valve or sensor whose text for on was in no row read so far, and whose text for off was not named: all
+ * its texts may be misread. Null if there is none; `gripper` is whose, `is_sensor` which of both. */
+const wh_field_source_t *wh_field_find_never_on(const wh_field_log_t *field, size_t *gripper,
+                                                bool *is_sensor);
 
 void wh_field_close(wh_field_log_t *field);
 

@@ -14,6 +14,7 @@
 
 static const wh_reader_field_t map_fields[] = {
     {"separator", "string", "one byte; a comma, or a tab if the first line has one and no comma", false},
+    {"decimal", "string", "the mark in numbers; a point", false},
     {"time", "string|table", "the column of the time, s", true},
     {"axes", "table", "by axis: its column, or where it stands", true},
     {"valves", "table", "by gripper: its column, or true or false", true},
@@ -185,7 +186,8 @@ static const wh_reader_field_t axis_fields[] = {{"scale", "number", "", false},
                                                 END};
 static const wh_reader_field_t time_fields[] = {
     {"scale", "number", "", false}, {"offset", "number", "", false}, END};
-static const wh_reader_field_t bit_fields[] = {{"on", "string", "", false}, END};
+static const wh_reader_field_t bit_fields[] = {
+    {"on", "string", "", false}, {"off", "string", "", false}, END};
 
 /* Refuses names beside the column's in a table { NAME, ... }, which the reader has entered, and reads it. */
 static void read_name(map_t *map, const char *of, const wh_reader_field_t *known, wh_field_source_t *source) {
@@ -219,6 +221,10 @@ static void read_scale(map_t *map, wh_field_source_t *source) {
 static void read_on(map_t *map, wh_field_source_t *source) {
     source->scale = 1;
     wh_reader_text(&map->reader, "on", "", source->on, sizeof source->on);
+    wh_reader_text(&map->reader, "off", "", source->off, sizeof source->off);
+    if (source->off[0] != '\0' && (source->on[0] == '\0' || strcmp(source->on, source->off) == 0)) {
+        wh_reader_refuse(&map->reader, "off", source->off, "a text beside `on`, and another one");
+    }
 }
 
 /* An axis's unit; that of an axis that shifts is mm. */
@@ -289,7 +295,8 @@ static void read_bit(map_t *map, const entry_t *entry) {
         wh_reader_leave(reader);
         return;
     default:
-        wh_reader_fail(reader, entry->name, "a column's name, { NAME, on = TEXT }, true or false");
+        wh_reader_fail(reader, entry->name,
+                       "a column's name, { NAME, on = TEXT, off = TEXT }, true or false");
     }
 }
 
@@ -416,6 +423,14 @@ static void begin_map(lua_State *L, map_t *map) {
     wh_reader_refuse_unknown(&map->reader, map_fields);
 }
 
+static void read_decimal(map_t *map) {
+    static const char *const marks[] = {".", ",", NULL};
+    map->field->has_commas = wh_reader_choice(&map->reader, "decimal", 0, marks) == 1;
+    if (map->field->has_commas && map->separator == ',') {
+        wh_reader_refuse(&map->reader, "decimal", ",", "another one than the separator");
+    }
+}
+
 static int read_separator(lua_State *L) {
     map_t *map = lua_touserdata(L, 1);
     begin_map(L, map);
@@ -425,6 +440,8 @@ static int read_separator(lua_State *L) {
     } else if (!lua_isnil(L, -1)) {
         wh_reader_fail(&map->reader, "separator", "\",\", \";\", \"|\" or \"\\t\"");
     }
+    lua_pop(L, 1);
+    read_decimal(map);
     return 0;
 }
 
