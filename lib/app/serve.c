@@ -10,6 +10,7 @@
 #include "../play/run_document.h"
 #include "../text/array.h"
 #include "../text/output.h"
+#include "../text/utf8.h"
 #include "apart.h"
 #include "app.h"
 #include "layout_arguments.h"
@@ -198,8 +199,11 @@ static void say_controller(const wh_controller_t *controller) {
             c->bad, c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
             WH_PLURAL(c->mistakes));
     if (c->nobodys > 0) {
-        fprintf(stderr, "serve: %s: %" PRIu64 " frame%s for units that its line does not have\n",
-                controller->name, c->nobodys, WH_PLURAL(c->nobodys));
+        char address[4 * sizeof c->nobody];
+        wh_utf8_visible(address, sizeof address, c->nobody);
+        fprintf(stderr,
+                "serve: %s: %" PRIu64 " frame%s for units that its line does not have, first \"%s\"\n",
+                controller->name, c->nobodys, WH_PLURAL(c->nobodys), address);
     }
     if (port->idle > 0) {
         fprintf(stderr, "serve: %s: %" PRIu64 " silent client%s closed\n", controller->name, port->idle,

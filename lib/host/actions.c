@@ -137,6 +137,7 @@ void wh_controller_end(wh_controller_t *controller, wh_status_t number, const ch
     controller->action.is_there = false;
     controller->action.is_running = false;
     wh_host_tell_load_ports(host); /* before the host hears that the action is over */
+    wh_host_tell_modes(host);
     const bool is_owed = tell_end(controller, number, text, seconds);
     if (controller->line.told == before) { /* the host's next frame comes behind this end all the same */
         wh_host_note(host, controller, WH_TRANSCRIPT_ENDED, NULL, 0);

@@ -178,6 +178,12 @@ static void read_errors(wh_reader_t *reader, wh_dialect_t *dialect) {
 
 /* ----------------------------------------------------------------------------------------------- commands */
 
+/* An action may change the robot's own controller on its way: an INIT switches the power on and goes home. */
+static bool goes_with(const wh_dialect_command_t *command, const wh_word_t *word) {
+    const wh_word_kind_t other = word->kind == WH_WORD_ACTION ? command->kind : word->kind;
+    return (word->kind == WH_WORD_ACTION || command->kind == WH_WORD_ACTION) && other == WH_WORD_CONTROLLER;
+}
+
 static void read_does(wh_reader_t *reader, wh_dialect_command_t *command) {
     char does[200];
     wh_reader_text(reader, "does", NULL, does, sizeof does);
@@ -187,10 +193,13 @@ static void read_does(wh_reader_t *reader, wh_dialect_command_t *command) {
             wh_reader_refuse(reader, "does", does,
                              "at most %d words of the prompt, or HOLD, RESUME, ACKN, LOCAL", WH_DIALECT_DOES);
         }
-        if (command->does_count > 0 && word->kind != command->kind) {
-            wh_reader_refuse(reader, "does", does, "words that are all actions, or all queries");
+        if (command->does_count > 0 && word->kind != command->kind && !goes_with(command, word)) {
+            wh_reader_refuse(reader, "does", does,
+                             "words that are all actions, perhaps with CONTROLLER, or all queries");
         }
-        command->kind = word->kind;
+        if (command->does_count == 0 || word->kind == WH_WORD_ACTION) {
+            command->kind = word->kind;
+        }
         command->does[command->does_count++] = word;
     }
 }

@@ -217,13 +217,31 @@ static bool take_own(wh_controller_t *controller, wh_request_t *request) {
     return true;
 }
 
-/* A dialect of a whole cell has words that one of its controllers does not have. */
+/* A dialect of a whole cell has words that one of its controllers does not have. A command does if one of its
+ * words does: an INIT may go home at a robot, and turn at an aligner. */
 static bool does_command(const wh_controller_t *controller, const wh_dialect_command_t *command) {
+    bool does = command->does_count == 0;
     for (size_t i = 0; i < command->does_count; ++i) {
-        if (!wh_mechanism_does(controller->mechanism.kind, command->does[i])) {
-            return false;
+        does = does || wh_mechanism_does(controller->mechanism.kind, command->does[i]);
+    }
+    return does;
+}
+
+/* Refuses lines of which one has a word of another mechanism, and an error on purpose. */
+static bool refuse_lines(wh_controller_t *controller, const wh_request_t *request, const wh_lines_t *lines) {
+    const wh_word_kind_t kind = request->command->kind;
+    for (size_t i = 0; kind != WH_WORD_LOCAL && i < lines->count; ++i) {
+        const wh_word_t *word = wh_word_of(lines->lines[i]);
+        if (word && !wh_mechanism_does(controller->mechanism.kind, word)) {
+            wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, word->name);
+            return true;
         }
     }
+    if (kind == WH_WORD_LOCAL || kind == WH_WORD_ALWAYS ||
+        !is_on_purpose(controller, lines->lines[0], WH_STATUS_NO_SUCH_COMMAND)) {
+        return false;
+    }
+    wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
     return true;
 }
 
@@ -324,9 +342,8 @@ static void carry_out(wh_controller_t *controller, wh_request_t *request) {
         wh_controller_tell_mistake(controller, request);
     } else if (outcome == WH_DECODED_REFUSED) {
         wh_controller_refuse_as(controller, request, &failure);
-    } else if (kind != WH_WORD_LOCAL && kind != WH_WORD_ALWAYS &&
-               is_on_purpose(controller, lines->lines[0], WH_STATUS_NO_SUCH_COMMAND)) {
-        wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
+    } else if (refuse_lines(controller, request, lines)) {
+        return;
     } else if (kind == WH_WORD_RATE) {
         set_rate(controller, request, lines->lines[0]);
     } else if (kind == WH_WORD_CONTROLLER) {
@@ -442,6 +459,9 @@ static wh_controller_t *find_unit(wh_controller_t *carrier, const wh_frame_t *fr
             return host->controllers[i];
         }
     }
+    if (carrier->counters.nobodys++ == 0) {
+        memcpy(carrier->counters.nobody, unit, sizeof unit);
+    }
     return NULL;
 }
 
@@ -450,7 +470,6 @@ void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame) {
     const bool is_good = frame->kind == WH_FRAME_GOOD;
     wh_controller_t *unit = is_good && controller->unit ? find_unit(controller, frame) : controller;
     controller->counters.bad += is_good ? 0 : 1;
-    controller->counters.nobodys += unit ? 0 : 1;
     if (is_good && unit) {
         take_good(unit, frame);
     } else if (!is_good && !controller->unit) { /* nobody knows for which unit it was */

@@ -51,9 +51,10 @@ typedef struct {
 
 /* Since opening; of a port. */
 typedef struct {
-    uint64_t frames;   /* good ones that came */
-    uint64_t bad;      /* others */
-    uint64_t nobodys;  /* for units that the line does not have */
+    uint64_t frames;                    /* good ones that came */
+    uint64_t bad;                       /* others */
+    uint64_t nobodys;                   /* for units that the line does not have */
+    char nobody[WH_DIALECT_NAME_BYTES]; /* the address of the first of them */
     uint64_t repeated; /* frames that came again, with their sequence number, and were answered as before */
     uint64_t actions;  /* begun */
     uint64_t busy;     /* refused as such, or ended so */
