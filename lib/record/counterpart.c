@@ -8,13 +8,21 @@ static wh_real_t share(wh_real_t value, wh_real_t limit) {
     return value > 0 ? (wh_real_t)DBL_MAX : 0;
 }
 
+/* Above this part of a limit a share is above `least`, whatever rounding does. So most wafers need no
+ * division. */
+#define SURELY ((wh_real_t)1.00001)
+
 /* The largest share, or any number above `least` if it is not below that. */
 static wh_real_t largest_share(const wh_pose_t *wafer, const wh_pose_t *gripper,
                                const wh_tolerance_t *tolerance, wh_real_t least) {
     const wh_vec3_t dr = wh_vec3_subtract(&wafer->r, &gripper->r);
     const wh_vec3_t n1 = wh_mat3_column(&wafer->R, 2);
     const wh_vec3_t n2 = wh_mat3_column(&gripper->R, 2);
-    const wh_real_t z = share(wh_real_abs(wh_vec3_dot(&dr, &n1)), tolerance->projz);
+    const wh_real_t away = wh_real_abs(wh_vec3_dot(&dr, &n1));
+    if (tolerance->projz > 0 && away > SURELY * tolerance->projz * least) {
+        return (wh_real_t)DBL_MAX;
+    }
+    const wh_real_t z = share(away, tolerance->projz);
     if (z >= least) {
         return z;
     }

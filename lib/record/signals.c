@@ -188,12 +188,13 @@ static void look_at_wafer(wh_signals_t *signals, const wh_state_t *state, int32_
                           const wh_pose_t *pose) {
     const wh_stay_t *stay = &signals->stays[signals->stay_of[w]];
     /* Most wafers rest with all their bits; a comparison of these is the quickest. */
-    const bool stays = stay->holder == holder &&
-                       (memcmp(&stay->pose, pose, sizeof *pose) == 0 || is_at(&stay->pose, pose, 0, 0));
+    const bool stays =
+        stay->holder == holder && (wh_thin_is_same_pose(&stay->pose, pose) || is_at(&stay->pose, pose, 0, 0));
     if (!stays) {
         add_stay(signals, state->seq, w, holder, pose);
         for (size_t g = 0; g < state->gripper_count; ++g) {
             signals->vicinity[g].is_known = false;
+            signals->measured[g].is_known = false;
         }
     }
 }
@@ -283,10 +284,45 @@ static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g,
     return near ? nearest : WH_NONE;
 }
 
+/* Measures a gripper, or takes what it was measured to. */
+static const wh_measured_t *look_at_gripper(wh_signals_t *signals, const wh_state_t *state, size_t g) {
+    wh_measured_t *measured = &signals->measured[g];
+    if (!measured->is_known) {
+        measured->pose = state->grippers[g].base_from_gripper;
+        measured->nearest = measure(signals, state, g, measured->values);
+        measured->is_known = true;
+    }
+    return measured;
+}
+
+/* True if it carries a wafer that is elsewhere than before. */
+static bool has_carried(wh_measured_t *measured, const wh_state_t *state, size_t g) {
+    const int32_t wafer = state->grippers[g].wafer;
+    if (wafer == WH_NONE || wh_thin_is_same_pose(&measured->carried, &state->wafers[wafer].base_from_wafer)) {
+        return false;
+    }
+    measured->carried = state->wafers[wafer].base_from_wafer;
+    return true;
+}
+
+/* Forgets what was measured to grippers that have moved, and to all if a wafer was carried. */
+static void forget_moved(wh_signals_t *signals, const wh_state_t *state) {
+    bool carried = false;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        wh_measured_t *measured = &signals->measured[g];
+        carried = has_carried(measured, state, g) || carried;
+        measured->is_known = measured->is_known &&
+                             wh_thin_is_same_pose(&measured->pose, &state->grippers[g].base_from_gripper);
+    }
+    for (size_t g = 0; carried && g < state->gripper_count; ++g) {
+        signals->measured[g].is_known = false;
+    }
+}
+
 static void add_gripper(wh_signals_t *signals, const wh_state_t *state, size_t g) {
     wh_steps_t *steps = &signals->nearest[g];
-    double values[WH_MEASURES] = {0};
-    const int32_t nearest = measure(signals, state, g, values);
+    const wh_measured_t *measured = look_at_gripper(signals, state, g);
+    const int32_t nearest = measured->nearest;
     const bool is_other = steps->count > 0 && steps->steps[steps->count - 1].value != nearest;
     step(steps, state->seq, nearest);
     for (size_t m = 0; m < WH_MEASURES; ++m) {
@@ -294,7 +330,7 @@ static void add_gripper(wh_signals_t *signals, const wh_state_t *state, size_t g
             wh_path_break(&signals->proximity[g][m]);
         }
         if (nearest != WH_NONE) {
-            wh_path_add(&signals->proximity[g][m], state->seq, values[m]);
+            wh_path_add(&signals->proximity[g][m], state->seq, measured->values[m]);
         }
     }
 }
@@ -320,6 +356,7 @@ static void insert_past(wh_signals_t *signals, const wh_event_t *event) {
 }
 
 static void add_proximity(wh_signals_t *signals, const wh_state_t *state) {
+    forget_moved(signals, state);
     for (size_t g = 0; g < state->gripper_count; ++g) {
         add_gripper(signals, state, g);
     }

@@ -86,6 +86,15 @@ typedef struct {
     bool is_known;
 } wh_neighbours_t;
 
+/* What a gripper was measured to, valid while it, all wafers and those that carry some stand. */
+typedef struct {
+    wh_pose_t pose;    /* of the gripper */
+    wh_pose_t carried; /* of the wafer that it carries, in base: its last bits may change after the pick */
+    double values[WH_MEASURES];
+    int32_t nearest;
+    bool is_known;
+} wh_measured_t;
+
 /* Zero it to begin with. Read only. */
 typedef struct {
     const wh_layout_t *layout; /* null before the first slice; borrowed */
@@ -103,6 +112,7 @@ typedef struct {
     wh_edge_scans_t scans;
     int64_t first, last; /* slices */
     wh_neighbours_t vicinity[WH_GRIPPERS];
+    wh_measured_t measured[WH_GRIPPERS];
 } wh_signals_t;
 
 /* The end of a slice, s. */

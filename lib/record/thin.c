@@ -50,6 +50,8 @@ static void keep(wh_thin_t *thin, bool exact) {
     wh_points_insert(&thin->list, thin->list.count, thin->last.slice, thin->last.values, exact);
     thin->is_pending = false;
     thin->is_forced = false;
+    thin->has_moved = false;
+    thin->has_rested = true;
     for (size_t i = 0; i < WH_THIN_WIDTH; ++i) {
         thin->low[i] = -HUGE_VAL;
         thin->high[i] = HUGE_VAL;
@@ -94,6 +96,7 @@ static void move(wh_thin_t *thin, const double values[]) {
     if (thin->turns) {
         wh_quaternion_turn(from + linear, values + linear, thin->moved + linear);
     }
+    thin->has_moved = true;
 }
 
 static bool fits(const wh_thin_t *thin, double slices) {
@@ -140,6 +143,33 @@ static void settle(wh_thin_t *thin, const double values[]) {
     }
 }
 
+/* Each sample of a rest narrows the slopes, and the last one more than all before it: it alone is taken. */
+static void end_rest(wh_thin_t *thin) {
+    thin->has_rested = false;
+    if (thin->is_pending) {
+        move(thin, thin->last.values);
+        narrow(thin, slices_to(thin, thin->last.slice));
+    }
+}
+
+/* A sample that may be elsewhere than the last point. */
+static void add_moved(wh_thin_t *thin, int64_t slice, const double values[]) {
+    if (thin->has_rested) {
+        end_rest(thin);
+    }
+    if (!thin->has_moved || !rests(thin, thin->last.values, values)) {
+        move(thin, values);
+    }
+    if (thin->is_pending && !fits(thin, slices_to(thin, slice))) {
+        keep(thin, thin->is_forced);
+        wh_points_keep_to_limit(&thin->list, thin_again, thin);
+        thin->has_rested = false;
+        move(thin, values);
+    }
+    narrow(thin, slices_to(thin, slice));
+    take(thin, slice, values);
+}
+
 void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     ++thin->of;
     if (thin->list.count > 0) {
@@ -148,21 +178,22 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     if (thin->list.count == 0) {
         take(thin, slice, values);
         keep(thin, true);
-        return;
+    } else if (thin->has_rested && rests(thin, anchor(thin), values)) {
+        take(thin, slice, values);
+    } else {
+        add_moved(thin, slice, values);
     }
-    move(thin, values);
-    if (thin->is_pending && !fits(thin, slices_to(thin, slice))) {
-        keep(thin, thin->is_forced);
-        wh_points_keep_to_limit(&thin->list, thin_again, thin);
-        move(thin, values);
-    }
-    narrow(thin, slices_to(thin, slice));
-    take(thin, slice, values);
 }
 
+/* A pose that stays has the quaternion that it had. */
 void wh_thin_add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
     double values[7] = {pose->r.x, pose->r.y, pose->r.z};
-    wh_quaternion_from_matrix(&pose->R, thin->of > 0 ? thin->last.values + 3 : NULL, values + 3);
+    if (thin->of > 0 && wh_thin_is_same_pose(pose, &thin->pose)) {
+        memcpy(values, thin->last.values, sizeof values);
+    } else {
+        wh_quaternion_from_matrix(&pose->R, thin->of > 0 ? thin->last.values + 3 : NULL, values + 3);
+        thin->pose = *pose;
+    }
     wh_thin_add(thin, slice, values);
 }
 

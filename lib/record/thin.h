@@ -13,6 +13,9 @@
 #ifndef WH_RECORD_THIN_H
 #define WH_RECORD_THIN_H
 
+#include <stdint.h>
+#include <string.h>
+
 #include "../math/pose.h"
 #include "points.h"
 
@@ -37,15 +40,33 @@ typedef struct {
     bool is_forced;        /* it must become one, unless the signal rests from the last point to it */
     double low[WH_THIN_WIDTH], high[WH_THIN_WIDTH]; /* slopes from the last point that fit later samples */
     double moved[WH_THIN_WIDTH];                    /* of `last` from the last point */
+    bool has_moved;                                 /* `moved` is known */
+    bool has_rested; /* since the last point, until `last`; then neither it nor the slopes are known */
+    wh_pose_t pose;  /* of `last`, if it was added as a pose */
 } wh_thin_t;
+
+/* True if two poses have the same bits. By words: a library's memcmp may go by bytes. */
+static inline bool wh_thin_is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
+    uint64_t of_a[sizeof *a / sizeof(uint64_t)];
+    uint64_t of_b[sizeof *b / sizeof(uint64_t)];
+    uint64_t differ = 0;
+    memcpy(of_a, a, sizeof of_a);
+    memcpy(of_b, b, sizeof of_b);
+    for (size_t i = 0; i < sizeof of_a / sizeof of_a[0]; ++i) {
+        differ |= of_a[i] ^ of_b[i];
+    }
+    return differ == 0;
+}
 
 /* Opens an empty signal of `width` numbers; with `turn` above 0 it has four more for a quaternion. */
 void wh_thin_open(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit);
 
-/* Adds a sample, of a later slice than the last one. Cost: about 20 ns, 100 ns where a rotation changes. */
+/* Adds a sample, of a later slice than the last one. Cost: about 5 ns at rest, else 20, 100 where a rotation
+ * changes. */
 void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]);
 
-/* Adds a pose: three numbers and a quaternion, with the sign nearer to the last sample's. */
+/* Adds a pose: three numbers and a quaternion, with the sign nearer to the last sample's. A pose that stays
+ * costs about 10 ns. */
 void wh_thin_add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose);
 
 /* Makes the last sample exact. */

@@ -6,9 +6,9 @@
 
 #include "array.h"
 
-/* The level, up to 9. From here on a page gets smaller by less than one percent, in several times the
+/* The level, up to 9. From here on a page gets smaller by less than three percent, in up to three times the
  * time. */
-#define LEVEL 6
+#define LEVEL 5
 
 char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
