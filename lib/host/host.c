@@ -307,7 +307,7 @@ static void give_name(wh_controller_t *controller, size_t client) {
 }
 
 /* Opens the port that was asked for; where a transcript is played, its host's side is the port. `beside`: the
- * port of the first client where several share a place; null: this is it. */
+ * port of the client before it where several share a place; null: this is the first one. */
 static bool open_port(wh_controller_t *controller, const wh_host_port_t *asked, const wh_port_t *beside) {
     char problem[WH_PORT_PROBLEM_BYTES];
     wh_port_line_t *line = &controller->line;
@@ -361,10 +361,12 @@ static bool open_ports(wh_controller_t *controller, const wh_host_port_t *port, 
     const bool is_shared = controller->dialect->clients.second == WH_PORT_SHARE && !port->is_pty;
     begin_line(controller, role, 1);
     bool good = open_port(controller, port, NULL);
+    const wh_port_t *before = &controller->line.port;
     for (size_t client = 2; good && is_shared && client <= WH_DIALECT_SHARERS; ++client) {
         wh_controller_t *other = append_controller(host, controller->leader);
         begin_line(other, role, client);
-        good = open_port(other, port, &controller->line.port);
+        good = open_port(other, port, before);
+        before = &other->line.port;
     }
     return good;
 }

@@ -71,7 +71,7 @@ typedef struct {
 } wh_port_counters_t;
 
 /* An open port. Read only the first group; the rest is private. */
-typedef struct {
+typedef struct wh_port {
     char place[WH_PORT_PLACE_BYTES]; /* "127.0.0.1:40001", "[::1]:40001", or the link's path;
                                       * of a transcript the controller's name */
     bool is_local;                   /* nobody reaches it from another machine */
@@ -87,10 +87,11 @@ typedef struct {
     const wh_port_kind_t *kind;
     wh_ring_t output;
     wh_port_second_t second;
-    int listener;           /* -1: none */
-    int client;             /* the connection, or the pty's own side; -1: none */
-    bool is_there, is_done; /* a client is there; it sends no more */
-    bool has_news;          /* CAME is not told yet */
+    const struct wh_port *before; /* shares the listener, and takes clients first; null: none */
+    int listener;                 /* -1: none */
+    int client;                   /* the connection, or the pty's own side; -1: none */
+    bool is_there, is_done;       /* a client is there; it sends no more */
+    bool has_news;                /* CAME is not told yet */
     char link[WH_PORT_PATH], slave[64];
     wh_transcript_t *transcript;
 } wh_port_t;
@@ -100,8 +101,9 @@ typedef struct {
 bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t second,
                       char problem[WH_PORT_PROBLEM_BYTES]);
 
-/* Another port for clients at the place of one that shares it. False, and `problem` says why. */
-bool wh_port_open_beside(wh_port_t *port, const wh_port_t *first, char problem[WH_PORT_PROBLEM_BYTES]);
+/* Another port for clients at the place of one that shares it. A client comes to it only while the ports
+ * before it have theirs: `before`, which must outlive it, and so on. False, and `problem` says why. */
+bool wh_port_open_beside(wh_port_t *port, const wh_port_t *before, char problem[WH_PORT_PROBLEM_BYTES]);
 
 /* Makes a pty, raw, and a symbolic link to it at `link`, where nothing may be but the
  * link to a pty that is no more, which a server that was killed has left. False, and `problem` says why:

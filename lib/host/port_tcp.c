@@ -40,10 +40,19 @@ static unsigned welcome_client(wh_port_t *port, int fd) {
     return told;
 }
 
+/* True if a port before it has room for the next client. */
+static bool is_before_free(const wh_port_t *port) {
+    bool is_free = false;
+    for (const wh_port_t *at = port->before; at; at = at->before) {
+        is_free = is_free || !at->is_there;
+    }
+    return is_free;
+}
+
 /* Takes a client that waits at the listener, if there is one. Returns what happened to others. */
 static unsigned take_waiting(wh_port_t *port) {
     wh_address_t from = {.size = sizeof from.bytes};
-    if (port->is_there && port->second == WH_PORT_SHARE) {
+    if ((port->is_there && port->second == WH_PORT_SHARE) || is_before_free(port)) {
         return 0; /* the next one is for another port of this place */
     }
     const int fd =
@@ -126,11 +135,12 @@ bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t sec
     return true;
 }
 
-bool wh_port_open_beside(wh_port_t *port, const wh_port_t *first, char problem[WH_PORT_PROBLEM_BYTES]) {
-    wh_port_begin(port, &tcp, first->second);
-    port->listener = fcntl(first->listener, F_DUPFD_CLOEXEC, 0);
+bool wh_port_open_beside(wh_port_t *port, const wh_port_t *before, char problem[WH_PORT_PROBLEM_BYTES]) {
+    wh_port_begin(port, &tcp, before->second);
+    port->before = before;
+    port->listener = fcntl(before->listener, F_DUPFD_CLOEXEC, 0);
     if (port->listener < 0) {
-        (void)snprintf(problem, WH_PORT_PROBLEM_BYTES, "%.200s: %s", first->place, strerror(errno));
+        (void)snprintf(problem, WH_PORT_PROBLEM_BYTES, "%.200s: %s", before->place, strerror(errno));
         return false;
     }
     note_place(port);

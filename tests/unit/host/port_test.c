@@ -231,6 +231,28 @@ static void second_client(void **state) {
 }
 
 /* A megabyte that nobody reads: the ring holds 64 kB, the rest waits in the system or with the client. */
+/* A place that two clients may share: the first one comes to the first port, whichever is served before. */
+static void clients_that_share(void **state) {
+    (void)state;
+    static wh_port_t other;
+    assert_true(wh_port_open_tcp(&port, "0", WH_PORT_SHARE, problem));
+    assert_true(wh_port_open_beside(&other, &port, problem));
+    const int first = connect_to_port();
+    const int second = connect_to_port();
+    for (int i = 0; i < 20; ++i) {
+        assert_int_equal(wh_port_serve(&other), 0);
+    }
+    assert_int_equal(serve(), WH_PORT_CAME);
+    assert_int_equal(wh_port_serve(&other), WH_PORT_CAME);
+    assert_int_equal(wh_port_send(&port, "1", 1) | wh_port_send(&other, "2", 1), 0);
+    assert_hears(first, "1");
+    assert_hears(second, "2");
+    (void)close(first);
+    (void)close(second);
+    wh_port_close(&other);
+    wh_port_close(&port);
+}
+
 static void full_input(void **state) {
     (void)state;
     static char bytes[1 << 20];
@@ -469,6 +491,7 @@ int main(void) {
         cmocka_unit_test(half_closed),
         cmocka_unit_test(who_sends_no_more_sees_the_end),
         cmocka_unit_test(second_client),
+        cmocka_unit_test(clients_that_share),
         cmocka_unit_test(full_input),
         cmocka_unit_test(deaf_client),
         cmocka_unit_test(addresses),
