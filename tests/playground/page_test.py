@@ -115,6 +115,23 @@ class Playground(unittest.TestCase):
         self.assertTrue(page.text("#tables").startswith("4\n"))
         self.sound()
 
+    def test_sentences_are_read_whole(self):
+        """On a phone, too: the reason of a miss goes on in the next line; rows of tables stay rows, and the text is the program's."""
+        page = self.page
+        self.addCleanup(page.resize, *browser.SIZE)
+        page.resize(390, 844)
+        self.choose("03_missed_pick")
+        page.js("Playground.bar.pane('result')")
+        page.settle()
+        wide = page.js("""const room = document.getElementById('tables').clientWidth;
+            return Array.from(document.querySelectorAll('#tables .sentence')).filter((each) => each.getBoundingClientRect().right > room).length""")
+        self.assertEqual(wide, 0)
+        self.assertIn("is not below 50 (by 4.083 mm)", page.js("return document.querySelector('#tables .sentence').textContent"))
+        self.assertEqual(page.text("#tables"), page.js("return Playground.result.answer.tables"))
+        rows = [line for line in page.text("#tables").splitlines() if "GET A 3" in line or line.startswith("wafer ")]
+        self.assertEqual([row in page.js("return Array.from(document.querySelectorAll('#tables .sentence'), (each) => each.textContent.trimEnd())")
+                          for row in rows], [False] * 2)
+
     def test_errors_at_their_lines(self):
         """Lua's, the reader's and expectations' own words stand below the line that they are about."""
         page = self.page
@@ -188,6 +205,8 @@ class Playground(unittest.TestCase):
         self.assertEqual(self.hash(), "e4e148111c08e2e0")
         self.assertTrue(page.js("return document.getElementById('reset').disabled"))
         page.js("const choice = document.getElementById('example'); choice.value = ''; choice.dispatchEvent(new Event('change'))")
+        self.answered()
+        self.assertEqual(page.js("return [Playground.result.answer.outcome, Playground.result.answer.message]"), ["met", None])
         new = self.text("script.lua")
         self.assertTrue(page.js("return document.getElementById('reset').disabled"))
         self.type("script.lua", new + "\nprint(1)\n")
@@ -305,6 +324,7 @@ class Playground(unittest.TestCase):
                     self.assertLessEqual(page.js("return document.documentElement.scrollWidth"), width)
                     if width < 800 or pane == "edit":
                         page.shoot(f"playground_{width}_{theme}_{pane}")
+                    self.assertGreater(page.js("return document.getElementById('what').offsetWidth"), 0)
                 self.assertEqual(page.js(f"return {FRAME}.document.documentElement.dataset.theme"), theme)
         self.sound()
 

@@ -8,7 +8,7 @@
 
     const NEW = {
         [SCRIPT]: 'cell "layout.lua"\n\nget("A", 1)\nput("B", 1)\n\nexpect_offset("Wafer 1", "B", 1, 0, 0)\n',
-        [LAYOUT]: 'return {\n  wafer = { diameter = 300 },\n  stations = {\n'
+        [LAYOUT]: 'return {\n  wafer = { diameter = 300 },\n  grippers = { { name = "EE" } },\n  stations = {\n'
             + '    A = { at = { 700, 0, 900 }, slots = 25 },\n'
             + '    B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 25 },\n  },\n'
             + '  wafers = { { name = "Wafer 1", station = "A", slot = 1 } },\n}\n',

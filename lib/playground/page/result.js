@@ -45,6 +45,11 @@
             `The layout has what waferhand ${name} plays in many runs, in threads: a page plays this one alone.`));
     }
 
+    /* Rows of a table keep their blanks; a sentence, which has no two of them in a row, goes on in the next line where it must. */
+    function lines(text) {
+        return (text.match(/.*\n|.+$/g) || []).map((line) => (/\S {2,}\S|\t/.test(line) ? line : P.element('span', { class: 'sentence' }, line)));
+    }
+
     function show(answer, ms) {
         const [text, kind] = WORDS[answer.outcome];
         const hash = P.element('code', { id: 'hash', title: 'The hash of the last state, as waferhand run gives it' },
@@ -52,7 +57,7 @@
         const took = P.element('span', { class: 'note', id: 'took' }, `${Math.round(ms)}\u00a0ms`);
         P.host('verdict').replaceChildren(P.element('div', { class: 'row' }, pill(text, kind), hash, took), ...reason(answer),
             ...others(answer));
-        P.host('tables').textContent = answer.tables;
+        P.host('tables').replaceChildren(...lines(answer.tables));
         P.say(text);
     }
 
