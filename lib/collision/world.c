@@ -189,6 +189,9 @@ static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t 
     mover->kind = part == WH_NONE ? WH_PART_WAFER : world->config->parts[part].kind;
     mover->arm = arm;
     world->bodies[body].has_parts = true;
+    if (mover->kind == WH_PART_ARM) {
+        world->still.has_parts[body / (int32_t)WH_ARM_BODIES] = true;
+    }
     mover->near = &world->near[index * WH_NEAR_CAPACITY];
     mover->radius = wh_convex_radius(part == WH_NONE ? &world->config->wafer : wh_world_convex(world, part));
 }

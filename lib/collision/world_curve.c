@@ -2,11 +2,23 @@
  * all near pairs that may count are measured again, also those that did not move in the bin. */
 #include "world_internal.h"
 
+/* The smallest gaps at a bin's end, so far. */
+typedef struct {
+    wh_real_t least[WH_CLEARANCES];
+    wh_real_t most[WH_WORTHS]; /* wh_world_most_of them: a larger gap does not count */
+} now_t;
+
+static void weigh(now_t *now) {
+    for (size_t i = 0; i < WH_WORTHS; ++i) {
+        now->most[i] = wh_world_most_of((wh_worth_t)i, now->least);
+    }
+}
+
 /* Measures a pair, unless its remaining `slack` says that it does not count. The result is known from then
  * on. If `b` is null, the other one rests and is the item near->other. */
-static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near, wh_real_t least[]) {
+static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near, now_t *now) {
     wh_world_t *world = look->world;
-    if (near->slack - (wh_world_gone(near, a, b) - near->since) > wh_world_most_of(near->worth, least)) {
+    if (near->slack - (wh_world_gone(near, a, b) - near->since) > now->most[near->worth]) {
         return;
     }
     wh_side_t item;
@@ -21,33 +33,37 @@ static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair
     if (kind == WH_CLEARANCES || wh_world_may_touch(look, one, two)) {
         return;
     }
+    wh_real_t *least = &now->least[kind];
     if (near->exact < one->gone + two->gone) {
         wh_gap_t gap;
-        wh_gap_follow(one->convex, one->now, two->convex, two->now, least[kind], near->axis,
+        wh_gap_follow(one->convex, one->now, two->convex, two->now, *least, near->axis,
                       wh_world_start(world, one->part, two->part), &gap);
-        wh_world_take_gap(near, one, two, &gap, least[kind]);
+        wh_world_take_gap(near, one, two, &gap, *least);
         wh_world_remember(near, a, b);
         wh_world_keep_clearance(look, kind, one, two, &gap);
     }
     const wh_real_t found = near->slack > 0 ? near->slack : 0;
-    least[kind] = found < least[kind] ? found : least[kind];
+    if (found < *least) {
+        *least = found;
+        weigh(now);
+    }
 }
 
-static void measure_rest(const wh_look_t *look, wh_mover_t *mover, wh_real_t least[]) {
+static void measure_rest(const wh_look_t *look, wh_mover_t *mover, now_t *now) {
     if (mover->part == WH_NONE) {
         return;
     }
     wh_world_list_near(look->world, mover);
     for (size_t i = 0; i < mover->near_count; ++i) {
-        measure(look, mover, NULL, &mover->near[i], least);
+        measure(look, mover, NULL, &mover->near[i], now);
     }
 }
 
-static void measure_pair(const wh_look_t *look, wh_mover_pair_t *pair, wh_real_t least[]) {
+static void measure_pair(const wh_look_t *look, wh_mover_pair_t *pair, now_t *now) {
     wh_mover_t *a = &look->world->movers[pair->a];
     wh_mover_t *b = &look->world->movers[pair->b];
     if (a->part != WH_NONE && b->part != WH_NONE) {
-        measure(look, a, b, &pair->near, least);
+        measure(look, a, b, &pair->near, now);
     }
 }
 
@@ -106,21 +122,22 @@ void wh_world_copy_curves(const wh_world_t *world, wh_curves_t *curves) {
 void wh_world_draw_curves(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_curves_t *curves = &world->curves;
-    wh_real_t now[WH_CLEARANCES];
+    now_t now;
     if (look->input->slice < curves->first + (curves->count + 1) * curves->slices) {
         return;
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        now[kind] = WH_CLEARANCE_RANGE;
+        now.least[kind] = WH_CLEARANCE_RANGE;
     }
+    weigh(&now);
     for (size_t i = 0; i < world->mover_count; ++i) {
-        measure_rest(look, &world->movers[i], now);
+        measure_rest(look, &world->movers[i], &now);
     }
     for (size_t i = 0; i < world->pair_count; ++i) {
-        measure_pair(look, &world->pairs[i], now);
+        measure_pair(look, &world->pairs[i], &now);
     }
     while (look->input->slice >= curves->first + (curves->count + 1) * curves->slices) {
-        close_bin(curves, world->gaps.least, now);
+        close_bin(curves, world->gaps.least, now.least);
     }
-    begin_bin(world, now);
+    begin_bin(world, now.least);
 }

@@ -21,6 +21,7 @@
 typedef struct {
     wh_pose_t before, now; /* base_from_body */
     bool has_gone;         /* it moves in this slice */
+    bool rests;            /* it has moved neither in this slice nor in the last one */
     bool has_parts;        /* something hangs on it; of an arm's bodies only those are moved */
     wh_real_t way;         /* way of its origin, mm */
     wh_real_t turn;        /* turn about its origin, rad; an upper bound */
@@ -101,6 +102,7 @@ typedef struct {
     wh_pair_t *near;              /* things that rest, room for WH_NEAR_CAPACITY */
     size_t near_count;
     wh_real_t reach; /* the way that it may still move before the list must be made again */
+    wh_real_t clear; /* the way that it may still move until a list can have something; 0: not known */
     size_t crowd;    /* the number of near things, if they are more than the list can hold; otherwise 0 */
     wh_side_t side;  /* as it was last asked for */
 } wh_mover_t;
@@ -156,6 +158,16 @@ typedef struct {
     double gone;     /* not less than the sum of the ways of any two movers, mm */
 } wh_world_due_t;
 
+/* Bodies that stand: a slice in which nothing has gone judges no pair. */
+typedef struct {
+    wh_pose_t told[WH_ARM_BODIES * WH_WORLD_ARMS]; /* the arms' bodies, as the last slice has told them */
+    bool has_parts[WH_WORLD_ARMS];                 /* something hangs on the arm: else nobody tells it */
+    bool rests[WH_WORLD_ARMS];                     /* so do all its bodies */
+    bool is_any_gone;                              /* a body has gone in this slice, or a wafer was taken */
+    bool begins;                                   /* one has that rested before, or a wafer was taken */
+    bool is_known; /* nothing has gone since the movers were told of all ways */
+} wh_world_still_t;
+
 struct wh_world {
     const wh_world_config_t *config;
     size_t fixed_count; /* parts that hang on nothing. The tree's items are these, then the wafers */
@@ -167,6 +179,7 @@ struct wh_world {
     size_t set_down;   /* wafers set down since the tree was built */
     /* of the arms, then of the grippers, then of the wafers that they hold, then of the doors */
     wh_body_t bodies[WH_ARM_BODIES * WH_WORLD_ARMS + 2 * WH_WORLD_GRIPPERS + WH_WORLD_DOORS];
+    wh_world_still_t still;
     wh_mover_t *movers;
     size_t mover_count;
     wh_mover_pair_t *pairs;
@@ -303,9 +316,17 @@ void wh_world_settle(const wh_look_t *look) WH_SYMBOL(wh_world_settle);
 /* Makes the mover's list of things at rest again. */
 void wh_world_list_anew(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_anew);
 
-/* Does so if it has moved as far as the list is valid. */
+/* Does so if it has moved as far as the list is valid. A list that was empty within more than its margin is
+ * empty again; its next one is due when it would be. */
 static inline void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
-    if (!(mover->reach > 0)) {
+    if (mover->reach > 0) {
+        return;
+    }
+    if (mover->clear > 0) {
+        const wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
+        mover->reach = margin - mover->motion - WH_CLEARANCE_RANGE;
+        ++world->counters.relisted;
+    } else {
         wh_world_list_anew(world, mover);
     }
 }

@@ -1,4 +1,6 @@
 /* The present places of everything, and the parts that rest. */
+#include <string.h>
+
 #include "world_internal.h"
 
 /* A gripper has left its released wafer when it has moved this far sideways, mm. */
@@ -55,23 +57,52 @@ static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
     return wh_vec3_norm(&change);
 }
 
-static void move_body(wh_body_t *body, const wh_pose_t *now) {
+/* Takes the body's present place. */
+static void move_body(wh_world_t *world, int32_t number, const wh_pose_t *now) {
+    wh_body_t *body = &world->bodies[number];
+    if (body->rests && memcmp(&body->now, now, sizeof *now) == 0) {
+        return;
+    }
     const bool stands = wh_arm_is_at(&body->now, now);
     if (stands && !body->has_gone) {
+        body->rests = true;
         return;
     }
     body->before = body->now;
-    body->has_gone = !stands;
     if (stands) {
+        body->has_gone = false;
         body->way = body->turn = body->lean = 0;
         return;
     }
+    world->still.is_any_gone = true;
+    world->still.begins = world->still.begins || !body->has_gone;
+    body->has_gone = true;
+    body->rests = false;
     body->now = *now;
     const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
     body->way = wh_vec3_norm(&way);
     const wh_real_t spread = spread_of(&body->now.R, &body->before.R);
     body->turn = spread > 0 ? angle_of(spread) : 0;
     body->lean = spread > 0 ? upright_change(&body->now.R, &body->before.R) : 0;
+}
+
+/* Nothing need be compared body by body for an arm that rests, and is told so. */
+static void move_arm(wh_world_t *world, size_t arm, const wh_pose_t base_from_arm[]) {
+    wh_world_still_t *still = &world->still;
+    const size_t first = arm * WH_ARM_BODIES;
+    const size_t bytes = WH_ARM_BODIES * sizeof base_from_arm[0];
+    if (!still->has_parts[arm] ||
+        (still->rests[arm] && memcmp(&still->told[first], &base_from_arm[first], bytes) == 0)) {
+        return;
+    }
+    memcpy(&still->told[first], &base_from_arm[first], bytes);
+    still->rests[arm] = true;
+    for (size_t i = first; i < first + WH_ARM_BODIES; ++i) {
+        if (world->bodies[i].has_parts) {
+            move_body(world, (int32_t)i, &base_from_arm[i]);
+            still->rests[arm] = still->rests[arm] && world->bodies[i].rests;
+        }
+    }
 }
 
 /* Returns the largest way of a point of it, mm. */
@@ -92,6 +123,7 @@ static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
     mover->gone[WH_GONE_ANYWHERE] = wh_world_add(mover->gone[WH_GONE_ANYWHERE], mover->motion);
     mover->gone[WH_GONE_UPRIGHT] = wh_world_add(mover->gone[WH_GONE_UPRIGHT], mover->rise);
     mover->reach -= mover->motion;
+    mover->clear -= mover->motion;
     return mover->motion;
 }
 
@@ -114,6 +146,7 @@ static void forget_pairs(wh_world_t *world, const wh_mover_t *mover) {
 static void relist_all(wh_world_t *world) {
     for (size_t i = 0; i < world->mover_count; ++i) {
         world->movers[i].reach = -1;
+        world->movers[i].clear = 0;
     }
 }
 
@@ -126,7 +159,8 @@ static void begin_to_carry(wh_world_t *world, size_t gripper, int32_t wafer) {
     *body = (wh_body_t){.before = world->wafers[wafer], .now = world->wafers[wafer]};
     wh_tree_set(&world->tree, wh_world_item_of_wafer(world, wafer), &nothing);
     mover->near_count = 0;
-    mover->is_placed = false;
+    mover->is_placed = mover->was_placed = false;
+    mover->motion = mover->bulge = mover->rise = 0;
     forget_pairs(world, mover);
     relist_all(world);
 }
@@ -220,6 +254,7 @@ static void take_wafers(const wh_look_t *look) {
             }
         }
         begin_to_carry(world, g, wafer);
+        world->still.is_any_gone = world->still.begins = true;
     }
 }
 
@@ -229,7 +264,7 @@ static void move_held(const wh_look_t *look) {
         const int32_t wafer = world->held[g];
         if (wafer != WH_NONE) {
             world->wafers[wafer] = look->input->wafers[wafer].base_from_wafer;
-            move_body(&world->bodies[wh_world_held_body(g)], &world->wafers[wafer]);
+            move_body(world, wh_world_held_body(g), &world->wafers[wafer]);
         }
     }
 }
@@ -245,28 +280,54 @@ static void leave_behind(wh_world_t *world, size_t gripper) {
     }
 }
 
-void wh_world_move(const wh_look_t *look) {
+/* Takes the present places of all bodies. */
+static void move_bodies(const wh_look_t *look) {
     wh_world_t *world = look->world;
-    for (size_t i = 0; i < WH_ARM_BODIES * wh_world_arms(world->config); ++i) {
-        if (world->bodies[i].has_parts) {
-            move_body(&world->bodies[i], &look->input->base_from_arm[i]);
-        }
+    world->still.is_any_gone = world->still.begins = false;
+    for (size_t arm = 0; arm < wh_world_arms(world->config); ++arm) {
+        move_arm(world, arm, look->input->base_from_arm);
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
-        move_body(&world->bodies[wh_world_gripper_body(g)], &look->input->grippers[g].base_from_gripper);
+        move_body(world, wh_world_gripper_body(g), &look->input->grippers[g].base_from_gripper);
         leave_behind(world, g);
     }
     for (size_t d = 0; d < world->config->door_count; ++d) {
-        move_body(&world->bodies[wh_world_door_body(d)], &look->input->base_from_door[d]);
+        move_body(world, wh_world_door_body(d), &look->input->base_from_door[d]);
     }
     take_wafers(look);
     move_held(look);
+}
+
+/* Pairs of two movers that stood are not due until one of them goes. */
+static void wake_pairs(wh_world_t *world) {
+    for (size_t i = 0; i < world->pair_count; ++i) {
+        world->due.of[i] = 0;
+    }
+    for (size_t block = 0; block < wh_world_blocks(world->pair_count); ++block) {
+        world->due.soonest[block] = 0;
+    }
+}
+
+/* A mover whose body rests knows that it has no motion. */
+void wh_world_move(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    move_bodies(look);
+    if (!world->still.is_any_gone && world->still.is_known) {
+        return;
+    }
     wh_real_t most = 0;
     for (size_t i = 0; i < world->mover_count; ++i) {
-        const wh_real_t motion = move_mover(world, &world->movers[i]);
-        most = motion > most ? motion : most;
+        wh_mover_t *mover = &world->movers[i];
+        if (!world->bodies[mover->body].rests) {
+            const wh_real_t motion = move_mover(world, mover);
+            most = motion > most ? motion : most;
+        }
     }
+    world->still.is_known = !world->still.is_any_gone;
     world->due.gone = wh_world_add(world->due.gone, 2 * most);
+    if (world->still.begins) {
+        wake_pairs(world);
+    }
 }
 
 void wh_world_jump(wh_world_t *world, const wh_world_input_t *input) {

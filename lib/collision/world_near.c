@@ -1,6 +1,9 @@
 /* The things at rest near a moving part: a list that is valid until the part has moved by its reach. */
 #include "world_internal.h"
 
+/* How much farther than for its list a mover with nothing near looks for things at rest, mm. */
+#define AHEAD WH_REAL(100.0)
+
 static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
     wh_side_t side = {.part = part, .kind = WH_PART_WAFER, .convex = &config->wafer};
     if ((size_t)part < config->part_count) {
@@ -96,6 +99,17 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
     }
 }
 
+/* Looks much farther if the list is empty: most parts are far from all that rests most of the time. The lists
+ * of the way that it finds are empty, too. */
+static void look_ahead(const wh_world_t *world, wh_mover_t *mover, const wh_box_t *box) {
+    int32_t found[1];
+    const wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
+    const wh_box_t grown = wh_box_grown(box, margin + AHEAD);
+    if (wh_tree_find(&world->tree, &grown, found, 1) == 0) {
+        mover->clear = AHEAD - mover->motion - WH_GAP_TOUCH;
+    }
+}
+
 static wh_part_kind_t kind_of_item(const wh_world_t *world, int32_t item) {
     return (size_t)item < world->fixed_count ? world->config->parts[item].kind : WH_PART_WAFER;
 }
@@ -128,6 +142,10 @@ void wh_world_list_anew(wh_world_t *world, wh_mover_t *mover) {
     }
     const size_t count = find_near(world, mover, &box, found);
     mover->near_count = 0;
+    mover->clear = 0;
+    if (count == 0) {
+        look_ahead(world, mover, &box);
+    }
     for (size_t i = 0; i < count; ++i) {
         if (may_pass(world, mover, found[i])) {
             continue;

@@ -81,8 +81,14 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
 /* Sums of ways are rounded, so a pair is judged when this much is left, mm. */
 #define EARLY 0.01
 
+static bool both_stand(const wh_world_t *world, const wh_mover_pair_t *pair) {
+    return !world->bodies[world->movers[pair->a].body].has_gone &&
+           !world->bodies[world->movers[pair->b].body].has_gone;
+}
+
 /* Judges a pair. Returns the distance that must still close before the pair matters. It is infinite while
- * they hold each other, because the knowledge of a wafer is forgotten when it is taken or released. */
+ * they hold each other, because the knowledge of a wafer is forgotten when it is taken or released, and while
+ * both stand, because all pairs are due when a body begins to go. */
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
@@ -95,7 +101,8 @@ static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
             judge_movers(look, pair);
         }
     }
-    return (double)(wh_world_slack(pair, movers) - worth);
+    return both_stand(world, pair) ? (double)WH_WORLD_NOWHERE
+                                   : (double)(wh_world_slack(pair, movers) - worth);
 }
 
 /* The least of a block, in halves: a processor compares several at once. */
@@ -112,15 +119,25 @@ static double least_of(const double due[]) {
     return least[0];
 }
 
-/* Judges the pairs of a block that are due, the first of which has this number. */
+/* Judges a pair of a block if it is due; the last block may have fewer. */
+static void judge_due(const wh_look_t *look, size_t index, double *due) {
+    const wh_world_t *world = look->world;
+    if (!(world->due.gone < *due) && index < world->pair_count) {
+        const double next = world->due.gone + judge_pair(look, &world->pairs[index]) - EARLY;
+        *due = next > 0 ? next : 0; /* also if it is no number */
+    }
+}
+
+/* Judges the pairs of a block that are due, the first of which has this number: in fours, because most are
+ * not. */
 static void judge_block(const wh_look_t *look, size_t first, double due[]) {
     const double gone = look->world->due.gone;
-    const size_t rest = look->world->pair_count - first;
-    const size_t count = rest < WH_WORLD_BLOCK ? rest : WH_WORLD_BLOCK;
-    for (size_t i = 0; i < count; ++i) {
-        if (!(gone < due[i])) {
-            const double next = gone + judge_pair(look, &look->world->pairs[first + i]) - EARLY;
-            due[i] = next > 0 ? next : 0; /* also if it is no number */
+    for (size_t i = 0; i < WH_WORLD_BLOCK; i += 4) {
+        if (gone < due[i] && gone < due[i + 1] && gone < due[i + 2] && gone < due[i + 3]) {
+            continue;
+        }
+        for (size_t k = i; k < i + 4; ++k) {
+            judge_due(look, first + k, &due[k]);
         }
     }
 }
@@ -137,15 +154,22 @@ static void judge_pairs(const wh_look_t *look) {
     }
 }
 
+static void judge_all(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    for (size_t i = 0; i < world->mover_count; ++i) {
+        judge_rest(look, &world->movers[i]);
+    }
+    judge_pairs(look);
+}
+
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list) {
     const wh_look_t look = {world, input, list};
     world->slice = input->slice;
     world->step = wh_world_next_step(world);
     wh_world_move(&look);
-    for (size_t i = 0; i < world->mover_count; ++i) {
-        judge_rest(&look, &world->movers[i]);
+    if (world->still.is_any_gone) {
+        judge_all(&look);
     }
-    judge_pairs(&look);
     wh_world_settle(&look);
     if (!world->config->known) {
         wh_world_draw_curves(&look);

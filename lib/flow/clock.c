@@ -274,6 +274,28 @@ void wh_clock_look(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
     }
 }
 
+/* True if a process or a clean waits for its begin. */
+static bool waits(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    return place->phase == WH_CLOCK_WAITING ||
+           (place->phase == WH_CLOCK_FREE && (place->is_clean_due || has_idle_clean(of, place)));
+}
+
+/* True if the place's wafer lies there well, or there is none, and nobody comes for it. */
+static bool is_left_alone(const wh_clock_place_t *place, const wh_clock_seen_t *seen) {
+    const bool is_bad = place->is_bad || (seen->wafer != WH_FLOW_NONE && seen->is_bad);
+    return place->wafer == seen->wafer && !place->is_away && !is_bad && !seen->keeps && !seen->is_lifted &&
+           !seen->is_awaited;
+}
+
+bool wh_clock_rests(const wh_flow_station_t *of, const wh_clock_place_t places[],
+                    const wh_clock_seen_t seen[]) {
+    bool rests = true;
+    for (int32_t i = 0; rests && i < of->slots; ++i) {
+        rests = is_left_alone(&places[i], &seen[i]) && !waits(of, &places[i]);
+    }
+    return rests;
+}
+
 void wh_clock_lift_anew(wh_clock_place_t *place, int64_t now_us) {
     place->lifted_us = place->is_away ? now_us : place->lifted_us;
 }

@@ -130,6 +130,11 @@ void wh_clock_look(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
                    const wh_clock_seen_t seen[], bool is_closed, int64_t now_us,
                    const wh_clock_teller_t *teller);
 
+/* True if wh_clock_look changes nothing while the slots are seen so, closed or not: each wafer lies well, and
+ * nothing waits for its begin. It costs much less than to find out what is seen. */
+bool wh_clock_rests(const wh_flow_station_t *of, const wh_clock_place_t places[],
+                    const wh_clock_seen_t seen[]);
+
 /* The wafer that was lifted is lifted anew: the stay that it may end has lasted until now. */
 void wh_clock_lift_anew(wh_clock_place_t *place, int64_t now_us);
 

@@ -8,29 +8,31 @@
 /* How far a point 1 mm from the end-effector's origin may be off, in mm for each mm of slack. */
 #define SLACK_PER_MM WH_REAL(0.01)
 
-/* The end-effector of the arm, by its first gripper, whose number is returned. WH_NONE, and nothing written,
- * if there is none on it. */
-static int32_t find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t base_from_grippers[],
-                             wh_pose_t *base_from_effector) {
+/* The first gripper on the arm, which tells where its end-effector is; WH_NONE: there is none on it. */
+static int32_t find_gripper(const wh_layout_t *layout, size_t arm) {
     const wh_machine_t *machine = &layout->machine;
     const bool is_in_list = arm > 0 && arm < WH_WORLD_ARMS;
     const int32_t robot = is_in_list ? layout->arms[arm].robot : 0;
     const bool is_second = is_in_list && layout->arms[arm].own != WH_ARM_BASE;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
-        if (mount->axis != WH_NONE || mount->robot != robot || (mount->arm > 0) != is_second) {
-            continue;
+        if (mount->axis == WH_NONE && mount->robot == robot && (mount->arm > 0) == is_second) {
+            return (int32_t)g;
         }
-        *base_from_effector = base_from_grippers[g];
-        if (mount->is_shifted) {
-            const wh_pose_t identity = wh_pose_identity();
-            const wh_pose_t gripper_from_effector =
-                wh_pose_relative(&mount->effector_from_gripper, &identity);
-            *base_from_effector = wh_pose_compose(&base_from_grippers[g], &gripper_from_effector);
-        }
-        return (int32_t)g;
     }
     return WH_NONE;
+}
+
+/* The end-effector of that gripper; of a shifted one it is written to `room`. */
+static const wh_pose_t *effector_of(const wh_mount_t *mount, const wh_pose_t *base_from_gripper,
+                                    wh_pose_t *room) {
+    if (!mount->is_shifted) {
+        return base_from_gripper;
+    }
+    const wh_pose_t identity = wh_pose_identity();
+    const wh_pose_t gripper_from_effector = wh_pose_relative(&mount->effector_from_gripper, &identity);
+    *room = wh_pose_compose(base_from_gripper, &gripper_from_effector);
+    return room;
 }
 
 /* `known` is where the carrier has the end-effector at the arm's axes; null: not known. */
@@ -150,20 +152,48 @@ static void move_arm(wh_links_t *links, const wh_layout_t *layout, size_t i, int
     place(links, layout, i, is_there ? &there : NULL);
 }
 
+/* True if this was told before, and all arms stood. */
+static bool still_stand(const wh_links_told_t *told, const wh_machine_t *machine,
+                        const wh_pose_t base_from_grippers[], const wh_real_t axes[]) {
+    return told->is_known && axes && memcmp(told->axes, axes, machine->axis_count * sizeof axes[0]) == 0 &&
+           memcmp(told->base_from_grippers, base_from_grippers,
+                  machine->gripper_count * sizeof base_from_grippers[0]) == 0;
+}
+
+static void remember(wh_links_told_t *told, const wh_machine_t *machine, const wh_pose_t base_from_grippers[],
+                     const wh_real_t axes[]) {
+    memcpy(told->axes, axes, machine->axis_count * sizeof axes[0]);
+    memcpy(told->base_from_grippers, base_from_grippers,
+           machine->gripper_count * sizeof base_from_grippers[0]);
+    told->is_known = true;
+}
+
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
                      const wh_real_t axes[], const wh_gripper_input_t told[], wh_real_t slack) {
     const size_t count = wh_layout_arms(layout);
+    bool all_stand = true;
+    if (still_stand(&links->standing, &layout->machine, base_from_grippers, axes)) {
+        return;
+    }
     for (size_t i = 0; i < count; ++i) {
         wh_links_arm_t *arm = &links->arms[i];
         size_t first;
         const wh_carrier_t *carrier = wh_layout_arm(layout, i, &first);
         const wh_real_t *own = axes ? &axes[first] : NULL;
-        wh_pose_t effector = arm->base_from_effector;
-        const int32_t g = find_effector(layout, i, base_from_grippers, &effector);
-        if (stands(arm, &effector, own, carrier)) {
+        wh_pose_t room;
+        const int32_t g = find_gripper(layout, i);
+        const wh_pose_t *effector =
+            g == WH_NONE ? &arm->base_from_effector
+                         : effector_of(&layout->machine.mounts[g], &base_from_grippers[g], &room);
+        if (stands(arm, effector, own, carrier)) {
             continue;
         }
-        arm->base_from_effector = effector;
+        all_stand = false;
+        arm->base_from_effector = *effector;
         move_arm(links, layout, i, g, own, told, slack);
+    }
+    links->standing.is_known = false;
+    if (all_stand && axes) {
+        remember(&links->standing, &layout->machine, base_from_grippers, axes);
     }
 }

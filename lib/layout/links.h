@@ -13,7 +13,15 @@ typedef struct {
     wh_real_t axes[WH_CARRIER_AXES]; /* its robot's, at which the links are, of a robot with a carrier */
 } wh_links_arm_t;
 
+/* A call in which each arm stood was told this: the next one that is told so has nothing to do. */
 typedef struct {
+    bool is_known;
+    wh_real_t axes[WH_AXES];
+    wh_pose_t base_from_grippers[WH_GRIPPERS];
+} wh_links_told_t;
+
+typedef struct {
+    wh_links_told_t standing;
     wh_links_arm_t arms[WH_LAYOUT_ARMS];
     wh_pose_t bodies[WH_LAYOUT_ARMS * WH_ARM_BODIES]; /* base_from_body, by its number: arms.h */
 } wh_links_t;

@@ -129,6 +129,15 @@ static int begin_all_clocks(lua_State *L) {
     return 0;
 }
 
+/* True if a look at the station changes nothing, because its wafers rest and nobody brings one. */
+static bool rests(const struct wh_clocks *clocks, const wh_clocked_t *of) {
+    bool is_alone = !clocks->mcs->layout->timed;
+    for (size_t r = 0; is_alone && r < WH_MCS_ROBOTS; ++r) {
+        is_alone = clocks->state->bringing[r] == WH_NONE;
+    }
+    return is_alone && wh_clock_rests(&of->of, &clocks->places[of->first], &clocks->seen[of->first]);
+}
+
 /* A free run tells a state more than once, and misses others. */
 static void hear(void *user, const wh_command_t *command, const wh_state_t *state) {
     struct wh_clocks *clocks = user;
@@ -146,7 +155,9 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
         const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
         wh_clock_pass(&of->of, &clocks->clocks[i], &clocks->places[of->first], us, rate_of(state, of),
                       state->utime, &teller);
-        look(clocks, i, state, WH_NONE);
+        if (!rests(clocks, of)) {
+            look(clocks, i, state, WH_NONE);
+        }
     }
     if (clocks->ports) {
         wh_ports_hear(clocks->ports, state, us);

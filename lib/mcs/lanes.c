@@ -93,7 +93,8 @@ static void tell_recorder(wh_mcs_t *mcs) {
         const int32_t command = (int32_t)i == mcs->lanes->current ? recorder->running : lane->running;
         if (lane->is_busy || command != WH_NONE) {
             static const wh_task_t waiting = {.share = WH_SHARE_WAITING};
-            const bool goes = lane->is_busy && !wh_mcs_is_held_back(mcs, lane);
+            const bool is_held_back = mcs->lanes->held_axes != 0 && wh_mcs_is_held_back(mcs, lane);
+            const bool goes = lane->is_busy && !is_held_back;
             recorder->parts[recorder->part_count++] =
                 (wh_recorder_part_t){command, goes ? lane->task : waiting, lane->grippers};
         }
@@ -103,12 +104,12 @@ static void tell_recorder(wh_mcs_t *mcs) {
 /* The state of a slice that ends a segment decides what comes next. */
 static void await_ends(const wh_mcs_t *mcs) {
     bool is_any_last = false;
-    for (size_t i = 0; i < mcs->lanes->count; ++i) {
+    for (size_t i = 0; mcs->wanted.partners.lossy && i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
         is_any_last =
             is_any_last || (lane->is_busy && lane->track.segment_slice == lane->track.segment_slices);
     }
-    if (is_any_last && mcs->wanted.partners.lossy) {
+    if (is_any_last) {
         mcs->wanted.partners.lossy->await(mcs->wanted.partners.user);
     }
 }

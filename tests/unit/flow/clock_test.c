@@ -14,6 +14,7 @@ static double rate;
 static int64_t now_us;
 static wh_clock_event_t told[20];
 static size_t told_count;
+static size_t rest_count;
 
 static void take(void *user, const wh_clock_event_t *event) {
     (void)user;
@@ -23,8 +24,20 @@ static void take(void *user, const wh_clock_event_t *event) {
 
 static const wh_clock_teller_t teller = {take, NULL};
 
+/* A look at a station that rests changes nothing. */
 static void look(void) {
+    const bool rests = wh_clock_rests(&station, places, seen);
+    const wh_clock_t clock_before = clock_;
+    const size_t told_before = told_count;
+    wh_clock_place_t places_before[2];
+    memcpy(places_before, places, sizeof places);
     wh_clock_look(&station, &clock_, places, seen, is_closed, now_us, &teller);
+    if (rests) {
+        assert_memory_equal(&clock_, &clock_before, sizeof clock_);
+        assert_memory_equal(places, places_before, sizeof places);
+        assert_int_equal(told_count, told_before);
+        ++rest_count;
+    }
 }
 
 static void begin(int64_t process_us, int32_t clean_after, int64_t clean_us) {
@@ -75,7 +88,9 @@ static void a_process_waits_until_it_is_closed_and_is_rounded_up(void **state) {
     assert_int_equal(places[1].phase, WH_CLOCK_PROCESSING);
     pass(SLICE);
     assert_int_equal(places[1].phase, WH_CLOCK_DONE);
+    rest_count = 0;
     pass(S / 2);
+    assert_int_equal(rest_count, S / 2 / SLICE);
     seen[1].wafer = WH_FLOW_NONE;
     look();
     assert_told(0, WH_CLOCK_PROCESS_BEGINS, 7, S, 2 * S + 1);
