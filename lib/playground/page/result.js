@@ -45,9 +45,12 @@
             `The layout has what waferhand ${name} plays in many runs, in threads: a page plays this one alone.`));
     }
 
-    /* Rows of a table keep their blanks; a sentence, which has no two of them in a row, goes on in the next line where it must. */
+    const isRow = (line) => /\S {2,}\S|\t/.test(line);
+
+    /* Rows of a table keep their blanks; a sentence, which has no two of them in a row, goes on in the next line. */
     function lines(text) {
-        return (text.match(/.*\n|.+$/g) || []).map((line) => (/\S {2,}\S|\t/.test(line) ? line : P.element('span', { class: 'sentence' }, line)));
+        return (text.match(/.*\n|.+$/g) || [])
+            .map((line) => (isRow(line) ? line : P.element('span', { class: 'sentence' }, line)));
     }
 
     function show(answer, ms) {
