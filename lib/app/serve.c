@@ -239,7 +239,12 @@ static void say_counters(const wh_host_t *host) {
 static void say_rate(const wh_host_t *host, const arguments_t *arguments) {
     const int64_t wall_us = host->clock.wall_us - host->clock.held_us;
     if (arguments->rate > 0 && wall_us > 0 && host->clock.run_us > 0) {
-        fprintf(stderr, "serve: --rate %g: %.3g reached, %.3f s in %.3f s\n", arguments->rate,
+        const uint64_t rates = host->so_far.rates;
+        char changed[60] = "";
+        if (rates > 0) {
+            (void)snprintf(changed, sizeof changed, ", set anew %" PRIu64 " time%s", rates, WH_PLURAL(rates));
+        }
+        fprintf(stderr, "serve: --rate %g%s: %.3g reached, %.3f s in %.3f s\n", arguments->rate, changed,
                 (double)host->clock.run_us / (double)wall_us, (double)host->clock.run_us / 1e6,
                 (double)wall_us / 1e6);
     }

@@ -258,6 +258,7 @@ static void set_rate(wh_controller_t *controller, const wh_request_t *request, c
     }
     if (!host->played) {
         host->rate = rate;
+        ++host->so_far.rates;
         host->clock.base_wall_us = wh_host_now(host);
         host->clock.base_run_us = wh_session_time_us(host->session);
     }

@@ -191,6 +191,7 @@ typedef struct {
     uint64_t orders;   /* accepted actions */
     uint64_t turns;    /* the times that ports were served */
     uint64_t failures; /* of actions that were begun */
+    uint64_t rates;    /* that a tester has set */
 } wh_host_counts_t;
 
 /* The cell as the host saw it last. */
