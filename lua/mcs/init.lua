@@ -5,7 +5,7 @@
 
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, rawget, rawset, select = error, ipairs, math, pairs, pcall, rawget, rawset, select
-local setmetatable, tostring, type, wh = setmetatable, tostring, type, wh
+local setmetatable, table, tostring, type, wh = setmetatable, table, tostring, type, wh
 
 return function(native)
   -- native.layout: the cell's layout, a value that `cell` sets. Before that a read raises the missing
@@ -121,10 +121,11 @@ return function(native)
 
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)
-    local index, words_of_it = lookup.robot(name), {}
+    local index, words_of_it, names = lookup.robot(name), {}, {}
     for _, known in ipairs(described().scripts) do
       local bound = known[1]
       local action = known.bound and _G[bound]
+      names[#names + 1] = action and bound or nil
       words_of_it[bound] = action and function(self, ...)
         if self ~= words_of_it then
           native.fail("BAD_ARGUMENT", ("%s: called with a dot (expected a colon, as in ROBOT:%s(...))"):format(bound, bound))
@@ -132,7 +133,9 @@ return function(native)
         return parts.bind(index, action, ...)
       end
     end
-    return words_of_it
+    return setmetatable(words_of_it, { __index = function(_, other)
+      native.fail("BAD_ARGUMENT", ("%s: no word of a robot (expected %s)"):format(tostring(other), table.concat(names, ", ")))
+    end })
   end
 
   rawset(_G, "robot", word("robot", robot))
