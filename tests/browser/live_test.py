@@ -147,6 +147,16 @@ class Live(unittest.TestCase):
         page.shoot("live_hit")
         self.assertEqual(page.faults(), [])
 
+    def test_stops_at_a_miss(self):
+        """A pick that fails is paused on where the gripper was nearest, and told why."""
+        page = self.page
+        self.show("run", "lua/examples/03_missed_pick.lua", "--page", "0", "--rate", "0.3")
+        page.js("document.getElementById('hits').click()")
+        page.wait("return !Waferhand.clock.following && Waferhand.shown.events.some((event) => event.kind === 'near_miss')", 40)
+        page.settle()
+        self.assertEqual(page.now(), 1.842)
+        self.assertEqual(page.faults(), [])
+
     def test_outlives_its_program(self):
         """It says that it is alone, and goes on by itself when the program is there again."""
         page = self.page
@@ -161,6 +171,15 @@ class Live(unittest.TestCase):
         page.wait("return document.title.includes('01_transfer') && performance.getEntriesByName('complete').length > 0", 30)
         page.wait("return document.getElementById('live').textContent.includes('live')")
         self.assertTrue(self.state("following"))
+        # A page that was hidden and seen again after its connection was refused has one, not two.
+        page.js("""window.made = []; window.EventSource = class extends EventTarget {
+                constructor() { super(); this.readyState = 1; made.push(this); } close() { this.readyState = 2; } };
+            EventSource.CLOSED = 2;
+            const look = (hidden) => { Object.defineProperty(document, 'hidden', { value: hidden, configurable: true });
+                document.dispatchEvent(new Event('visibilitychange')); };
+            look(true); look(false); made[0].close(); made[0].dispatchEvent(new Event('error')); look(true); look(false);""")
+        time.sleep(1.3)
+        self.assertEqual(page.js("return made.length"), 2)
 
     def test_names_are_text(self):
         """Whatever a layout calls its things."""

@@ -18,7 +18,7 @@
         }
     }
 
-    const isHit = (event) => ['hit', 'too_close', 'undecided'].includes(event.kind);
+    const isHit = (event) => ['hit', 'too_close', 'undecided', 'near_miss', 'contested'].includes(event.kind);
 
     /* With the switch on, the shown time stays at a hit; the cell goes on. */
     function stopAt(doc, events) {
@@ -108,7 +108,7 @@
         live.back = W.element('button', { type: 'button', id: 'back', title: 'Back to the present (End)',
             'aria-keyshortcuts': 'End', hidden: true, click: () => W.clock.seek(W.clock.end) }, 'Back to the present');
         return W.element('div', { class: 'row', id: 'liveline' }, live.verdict, live.pace, W.element('span', { class: 'space' }),
-            live.back, W.element('label', {}, box, ' stop at hits'));
+            live.back, W.element('label', {}, box, ' stop at hits and misses'));
     }
 
     live.start = function (doc) {

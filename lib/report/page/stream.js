@@ -50,7 +50,8 @@
         own.heard(kind, what);
     }
 
-    /* The browser connects again by itself, and tells from where on. Once it has given up, so do we. */
+    /* The browser connects again by itself, and tells from where on. Once it has given up, we do, unless the page was hidden
+     * meanwhile: it connects when it is seen. */
     function connect() {
         own.events = new EventSource(`stream?from=${own.next}&id=${own.id}`);
         ['frame', 'growth', 'anew', 'answer'].forEach((kind) => own.events.addEventListener(kind, (event) => told(kind, event)));
@@ -58,7 +59,7 @@
         own.events.addEventListener('error', (event) => {
             waiting('no answer');
             if (event.target.readyState === EventSource.CLOSED) {
-                setTimeout(connect, AGAIN_MS);
+                setTimeout(() => own.events === event.target && connect(), AGAIN_MS);
             }
         });
     }
