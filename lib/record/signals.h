@@ -86,7 +86,7 @@ typedef struct {
     bool is_known;
 } wh_neighbours_t;
 
-/* What a gripper was measured to, valid while it, all wafers and those that carry some stand. */
+/* A gripper's measurement, valid while it, all wafers and those that carry some stand. */
 typedef struct {
     wh_pose_t pose;    /* of the gripper */
     wh_pose_t carried; /* of the wafer that it carries, in base: its last bits may change after the pick */
