@@ -220,6 +220,7 @@ void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     clocks->mcs = mcs;
     clocks->of = lua_memory(L, real->station_count * sizeof *clocks->of);
     clocks->by_station = lua_memory(L, real->station_count * sizeof *clocks->by_station);
+    clocks->found = lua_memory(L, real->wafer_count * sizeof *clocks->found);
     number_stations(clocks, real);
     make_state(L, clocks);
     mcs->clocks = clocks;

@@ -29,6 +29,13 @@ typedef struct {
     bool tells_late;                 /* a stay beyond a window is told, and fails nothing */
 } wh_clocks_state_t;
 
+/* Where a wafer that nobody holds was found when it was looked for, and at which pose. */
+typedef struct {
+    bool is_known, is_bad;
+    int32_t place; /* by number, or WH_NONE */
+    wh_pose_t pose;
+} wh_clocks_found_t;
+
 struct wh_clocks {
     wh_mcs_t *mcs;
     size_t count, place_count;
@@ -39,6 +46,7 @@ struct wh_clocks {
     wh_clock_t *clocks;       /* by number; within the state's block, as the next two */
     wh_clock_place_t *places; /* by place */
     wh_clock_seen_t *seen;    /* by place */
+    wh_clocks_found_t *found; /* by wafer */
     struct wh_ports *ports;   /* load ports, see ports.h; null: there are none */
 };
 

@@ -1,6 +1,7 @@
 /* Where the wafers of stations that take time are: in a slot, lifted within the station, or away. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "clocks.h"
 #include "flow_played.h"
@@ -57,27 +58,39 @@ static found_t find_room(const struct wh_clocks *clocks, const wh_wafer_t *wafer
     return found;
 }
 
-static found_t find(const struct wh_clocks *clocks, const wh_wafer_t *wafer) {
+static found_t find_lying(const struct wh_clocks *clocks, const wh_wafer_t *wafer) {
     wh_place_t place;
-    if (wafer->holder != WH_NONE) {
-        return (found_t){WH_NONE, false};
-    } else if (!wh_cell_locate(&clocks->mcs->real->cell, &wafer->base_from_wafer, &place)) {
+    if (!wh_cell_locate(&clocks->mcs->real->cell, &wafer->base_from_wafer, &place)) {
         return find_room(clocks, wafer);
     }
     const int32_t number = clocks->by_station[place.station];
     return (found_t){number == WH_NONE ? WH_NONE : (int32_t)clocks->of[number].first + place.slot - 1, false};
 }
 
+/* Most wafers lie where they lay, to the bit. */
+static found_t find(const struct wh_clocks *clocks, const wh_state_t *state, size_t number) {
+    const wh_wafer_t *wafer = &state->wafers[number];
+    wh_clocks_found_t *last = &clocks->found[number];
+    if (wafer->holder != WH_NONE) {
+        return (found_t){WH_NONE, false};
+    }
+    if (!last->is_known || memcmp(&last->pose, &wafer->base_from_wafer, sizeof last->pose) != 0) {
+        const found_t found = find_lying(clocks, wafer);
+        *last = (wh_clocks_found_t){true, found.is_bad, found.place, wafer->base_from_wafer};
+    }
+    return (found_t){last->place, last->is_bad};
+}
+
 /* The first of two in one slot counts. */
 void wh_clocks_place_all(struct wh_clocks *clocks, const wh_state_t *state) {
     for (size_t i = 0; i < clocks->place_count; ++i) {
         wh_clock_seen_t *seen = &clocks->seen[i];
-        if (seen->wafer != WH_NONE && find(clocks, &state->wafers[seen->wafer]).place != (int32_t)i) {
+        if (seen->wafer != WH_NONE && find(clocks, state, (size_t)seen->wafer).place != (int32_t)i) {
             seen->wafer = WH_NONE;
         }
     }
     for (size_t w = 0; w < state->wafer_count; ++w) {
-        const found_t found = find(clocks, &state->wafers[w]);
+        const found_t found = find(clocks, state, w);
         wh_clock_seen_t *seen = found.place == WH_NONE ? NULL : &clocks->seen[found.place];
         if (seen && (seen->wafer == WH_NONE || seen->wafer == (int32_t)w)) {
             seen->wafer = (int32_t)w;

@@ -126,6 +126,7 @@ typedef struct {
     size_t g;
     wh_vec3_t at;
     wh_real_t margin; /* nothing happens between things that are farther from each other */
+    wh_real_t way;    /* how far its wafer, or its origin, comes in a slice */
     bool is_stroke;   /* what stands does not matter: wh_quiet_room has looked at it */
 } mover_t;
 
@@ -188,7 +189,7 @@ static int64_t until_place(const mover_t *mover, const wh_vec3_t *place, int32_t
     if (mover->is_stroke && (other == WH_NONE || (mover->axes & mover->quiet->movers[other]) == 0)) {
         return INT64_MAX;
     }
-    const wh_real_t way = way_of(mover, mover->g) + (other == WH_NONE ? 0 : way_of(mover, (size_t)other));
+    const wh_real_t way = mover->way + (other == WH_NONE ? 0 : way_of(mover, (size_t)other));
     return slices_until(mover, wh_vec3_norm(&from), way);
 }
 
@@ -200,7 +201,7 @@ static int64_t until_slots(const mover_t *mover, const wh_station_t *station) {
     const wh_real_t height = wh_real_max(wh_vec3_dot(&up, &from), 0);
     const wh_vec3_t along = wh_vec3_scale(height < top ? height : top, &up);
     const wh_vec3_t aside = wh_vec3_subtract(&from, &along);
-    return slices_until(mover, wh_vec3_norm(&aside), way_of(mover, mover->g));
+    return slices_until(mover, wh_vec3_norm(&aside), mover->way);
 }
 
 /* Its z is base's, to the last bit. */
@@ -300,11 +301,15 @@ int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator
         slices = does_gripper_stand(simulator, g, last->grippers[g].valve, moves) ? slices : 0;
     }
     for (size_t g = 0; g < storage->gripper_count && slices > 0; ++g) {
+        if ((axes & quiet->movers[g]) == 0) {
+            continue;
+        }
         const wh_gripper_t *gripper = &storage->grippers[g];
         const wh_vec3_t *at = gripper->wafer == WH_NONE ? &gripper->base_from_gripper.r
                                                         : &storage->wafers[gripper->wafer].base_from_wafer.r;
-        const mover_t mover = {quiet, simulator, axes, g, *at, margin_of(simulator), false};
-        slices = (axes & quiet->movers[g]) == 0 ? slices : least_of(slices, until_mover(&mover, stroke));
+        mover_t mover = {quiet, simulator, axes, g, *at, margin_of(simulator), 0, false};
+        mover.way = way_of(&mover, g);
+        slices = least_of(slices, until_mover(&mover, stroke));
     }
     return slices;
 }

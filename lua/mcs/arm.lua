@@ -22,8 +22,9 @@ return function(native, lookup, tasks, alarms)
   -- The state of a robot, without one of the running command's.
   function arm.state(robot)
     robot = robot or tasks.current().robot or 1
-    states[robot] = states[robot] or {}
-    return states[robot]
+    local state = states[robot] or {}
+    states[robot] = state
+    return state
   end
 
   -- By task: its running command, and the door that this goes through, if any.
@@ -141,8 +142,9 @@ return function(native, lookup, tasks, alarms)
 
   -- The robot that stands there, or nil; robot `but` does not count.
   function arm.stands_in(resource, but)
-    for robot, state in pairs(states) do
-      if robot ~= but and state.inside and station_text(state.inside.station) == resource then
+    for robot = 1, #native.layout.robots do
+      local state = states[robot]
+      if robot ~= but and state and state.inside and station_text(state.inside.station) == resource then
         return robot
       end
     end
@@ -156,8 +158,9 @@ return function(native, lookup, tasks, alarms)
 
   -- The state of the robot that stands in the station.
   function arm.find_inside(station_name)
-    for _, state in pairs(states) do
-      if state.inside and state.inside.station == station_name then
+    for robot = 1, #native.layout.robots do
+      local state = states[robot]
+      if state and state.inside and state.inside.station == station_name then
         return state
       end
     end

@@ -5,7 +5,7 @@
 -- anything, so their plans are not kept; nor are those that measure on the way, or stand still in a phase.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, next, table = ipairs, next, table
+local ipairs, pairs, table = ipairs, pairs, table
 
 return function(native, patterns, arm, tasks)
   local kinds = {}
@@ -18,14 +18,8 @@ return function(native, patterns, arm, tasks)
   local AIMS = { "target", "enters", "note" }
 
   local function are_shipped(pattern)
-    local is_one = false
-    for word, one in next, shipped do
-      if patterns[word] ~= one then
-        return false
-      end
-      is_one = is_one or pattern == one
-    end
-    return is_one
+    local get, put, swap = patterns.get, patterns.put, patterns.swap
+    return get == shipped.get and put == shipped.put and swap == shipped.swap and (pattern == get or pattern == put or pattern == swap)
   end
 
   local function is_plain(target)
@@ -72,11 +66,14 @@ return function(native, patterns, arm, tasks)
   end
 
   local function copy(target)
+    if not target then
+      return nil
+    end
     local copied = {}
-    for name, value in next, target or {} do
+    for name, value in pairs(target) do
       copied[name] = value
     end
-    return target and copied
+    return copied
   end
 
   -- Which fields of a plan's requests are its target, or one of its parts.

@@ -114,13 +114,21 @@ return function(native, errors)
     return whole
   end
 
+  -- By a robot's axes: each of them by its name.
+  local axes_by_name = {}
+
   -- The axis of that name of a robot (by default the first), or nil.
   function lookup.axis(name, robot)
-    for _, axis in ipairs(native.layout.robots[robot or 1].axes) do
-      if axis.name == name then
-        return axis
+    local axes = native.layout.robots[robot or 1].axes
+    local named = axes_by_name[axes]
+    if not named then
+      named = {}
+      for _, axis in ipairs(axes) do
+        named[axis.name] = named[axis.name] or axis
       end
+      axes_by_name[axes] = named
     end
+    return named[name]
   end
 
   -- The parts of the limits in a command's options; nil: all of them.

@@ -62,10 +62,12 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
   -- The gripper's offset from the taught slot's frame: from the command's options, else from an ALIGN's result
   -- (`found`). Offsets that the layout does not allow are refused.
   local function read_corrections(target, options, prefix, found)
+    local corrections = native.layout.corrections
     for _, name in ipairs(lookup.correction_fields) do
       local value = options[prefix .. name] or found[name] or 0
-      local most, field = native.layout.corrections[name], name:match("^d([xyz])$") or name
+      local most = corrections[name]
       if value > most or value < -most then
+        local field = name:match("^d([xyz])$") or name
         local text = "%s: %.10g (expected from %.10g to %.10g %s: corrections.%s of the layout%s)"
         local why = found[name] and ("; ALIGN found it: %scorrect = false goes without"):format(prefix) or ""
         native.fail("CORRECTION_TOO_LARGE",
@@ -176,11 +178,13 @@ return function(native, lookup, align, mechanisms, stations, grips, planes)
     local found = word == "get" and prefix and align.correction(station.name, options, prefix)
     read_corrections(target, prefix and options or {}, prefix or "", found or {})
     target.place = stations.place(station, number, robot, target)
-    for _, name in ipairs(parameter_names) do
-      target[name] = options[name]
-      if target[name] == nil then
-        target[name] = station[name]
+    for index = 1, #parameter_names do
+      local name = parameter_names[index]
+      local own = options[name]
+      if own == nil then
+        own = station[name]
       end
+      target[name] = own
     end
     local edge = native.layout.grippers[target.gripper].edge
     if edge and options.release == nil and station.release_default then

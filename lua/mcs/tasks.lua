@@ -101,20 +101,22 @@ return function(native, lookup)
     return is_any
   end
 
-  -- While the script waits, other tasks go on, and slices go out, until it can go on.
+  -- While the script waits, other tasks go on, and slices go out, until it can go on. It is asked again when a task
+  -- has gone on, or slices have gone out.
   local function drive(can_go_on)
     while not can_go_on() do
       local place = 1
-      local went = false
-      while place <= #tasks and not can_go_on() do
+      local went, has_gone = false, false
+      while place <= #tasks and not (has_gone and can_go_on()) do
         local task = tasks[place]
-        if task.can_go_on() then
+        has_gone = task.can_go_on()
+        if has_gone then
           go_on(task)
           went = true
         end
         place = place + (tasks[place] == task and 1 or 0)
       end
-      if not went and not can_go_on() then
+      if not went then
         if native.runs() then
           native.advance()
         elseif not refuse_waits() then

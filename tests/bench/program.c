@@ -201,6 +201,7 @@ static void count_whole(const char *row, const char *run, double goal) {
     bench_figure(row, "instructions", &spread, true, goal);
 }
 
+#define REAL_FLOW "build/waferhand run tests/bench/real_flow.lua --counted --brief --set lots=40"
 #define FLOW "build/waferhand run tests/bench/flow.lua --set wafers=10000"
 #define SIMPY "PYTHONPATH=build/pypi python3 tests/bench/peer_simpy.py 10000"
 
@@ -299,7 +300,10 @@ int main(int argc, char **argv) {
                  "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null", 5);
     time_counted("counted, passive pads",
                  "build/waferhand run tests/bench/hour.lua --set seconds=900 --brief >/dev/null", 1.5);
-    count_each("counted, a command", LOOP, 100, 300, 0.9e6);
+    count_each("counted, a command", LOOP, 100, 300, 0.7e6);
+    /* Robots with axes: 40 carriers of 25 wafers come and go. */
+    time_run_of("real flow, 1,000, seat", REAL_FLOW " --set seat=true >/dev/null", 5);
+    time_run_of("real flow, 1,000 wafers", REAL_FLOW " >/dev/null", 5);
     /* Two robots, two locks, six modules, all by times alone. */
     time_run_of("flow, 10,000 wafers", FLOW " >/dev/null", 0.2);
     count_each("flow, a wafer", "tests/bench/flow.lua --brief --set wafers=", 1000, 3000, 60e3);
