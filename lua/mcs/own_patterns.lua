@@ -420,6 +420,11 @@ return function(native, lookup, patterns, steps, own_steps)
     end
   end
 
+  -- True while GET and PUT are ours.
+  function own.has_shipped()
+    return patterns.get == shipped.get and patterns.put == shipped.put
+  end
+
   ------------------------------------------------------------------------------------------- added patterns
 
   function own.names()

@@ -64,7 +64,7 @@ return function(native, wh)
   local times = make("times", native, patterns, lookup, arm, player, ports)
   local transfer, carrying = make("transfer", native, patterns, lookup, arm, player, targets, align, centring, alarms,
     slot_map, times, truth, ports)
-  local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying, own.attempt)
+  local tryout = make("tryout", native, patterns, lookup, player, targets, carrying, own.attempt)
   local flippers = make("flippers", native, patterns, lookup, arm, player, mechanisms, alarms)
   local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms, times)
   local singles = make("commands", native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers,
@@ -94,7 +94,8 @@ return function(native, wh)
   local parts = { lookup = lookup, alarms = alarms, targets = targets, tasks = tasks, commands = commands, queries = queries,
     own = own, finish = finish, ports = ports, slot_map = slot_map }
 
-  parts.reach = make("reach", native, tryout, make("flip_room", native, patterns, lookup, player, tryout))
+  parts.reach = make("reach", native, tryout, make("flip_room", native, patterns, lookup, player, tryout),
+    stations, own)
 
   -- Keeps motion control's knowledge: returns a function that puts it back, and one that tells whether
   -- the arm is unchanged.

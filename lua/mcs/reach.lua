@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, tostring, type = ipairs, math, tostring, type
 
-return function(native, tryout, flip_room)
+return function(native, tryout, flip_room, stations, own)
   local rehearse, rehearse_map = tryout.rehearse, tryout.rehearse_map
   local reach = {}
 
@@ -36,16 +36,60 @@ return function(native, tryout, flip_room)
     return #list > 0 and list or { station.effector }
   end
 
+  -- GET and PUT at a slot: returns the word of the refused one and why, or nil, nil and the axes before the slot.
+  local function try_slot(station, slot, gripper)
+    native.reach(station.index, slot, native.layout.grippers[gripper].robot)
+    return rehearse(station.name, slot, gripper)
+  end
+
+  -- The slots of a tilted stack that can be nearest to theta's axis, but for its ends: from the first to the last of them.
+  -- The square of R is a parabola over the slots, and each point of the way in has its own lowest slot.
+  local function nearest_slots(station, robot, at_first, at_last)
+    local first, count = stations.place(station, 1, robot, {}), station.slots - 1
+    local last, r = stations.place(station, station.slots, robot, {}), native.layout.robots[robot].first + 1
+    local dx, dy = (last.x - first.x) / count, (last.y - first.y) / count
+    local square, along = dx * dx + dy * dy, first.dir_x * dx + first.dir_y * dy
+    local in_front = ((at_last[r] * at_last[r] - at_first[r] * at_first[r]) / count - count * square) / 2
+    local inside = in_front + station.retract * along
+    local low, high = 1 - math.max(in_front, inside) / square, 1 - math.min(in_front, inside) / square
+    return math.max(2, low - 1), math.min(count, high + 1)
+  end
+
+  -- True if the ends of a tilted stack and the slots nearest to theta's axis show that all of it is in reach: all axes
+  -- but R go one way along it. It holds for our own GET and PUT, a robot of theta, R, Z and yaw, and ends on one turn.
+  local function do_some_show_all(station, gripper)
+    local number = native.layout.grippers[gripper].robot
+    local robot = native.layout.robots[number]
+    if not station.taught or station.upright or station.slots < 4 or not robot.is_usual or not own.has_shipped() then
+      return false
+    end
+    local word, _, first = try_slot(station, 1, gripper)
+    local word_last, _, last = try_slot(station, station.slots, gripper)
+    if word or word_last then
+      return false
+    end
+    for _, axis in ipairs(robot.axes) do
+      if axis.turns and math.abs(last[axis.index] - first[axis.index]) > 1 then
+        return false
+      end
+    end
+    local low, high = nearest_slots(station, number, first, last)
+    for slot = 2, station.slots - 1 do
+      if slot >= low and slot <= high and try_slot(station, slot, gripper) then
+        return false
+      end
+    end
+    return true
+  end
+
   -- Calls found(slot, word, reason, robot) for each slot at which a command of that word is refused to that robot: then
   -- a run refuses the whole layout.
   function reach.check(station, found)
     for _, gripper in ipairs(servers(station)) do
-      for _, slot in ipairs(slots_of(station)) do
-        local robot = native.layout.grippers[gripper].robot
-        native.reach(station.index, slot, robot)
-        local word, problem = rehearse(station.name, slot, gripper)
+      for _, slot in ipairs(do_some_show_all(station, gripper) and {} or slots_of(station)) do
+        local word, problem = try_slot(station, slot, gripper)
         if problem then
-          found(slot, word, reason_of(problem), robot)
+          found(slot, word, reason_of(problem), native.layout.grippers[gripper].robot)
         end
       end
     end
@@ -73,8 +117,9 @@ return function(native, tryout, flip_room)
   -- Earlier commands may have wound theta up, so that a slot is a turn or more away from its theta from
   -- home. `found` as above, at most once for a slot.
   local function check_wound(station, slot, found)
-    local _, problem, theta = rehearse(station.name, slot)
+    local _, problem, axes = rehearse(station.name, slot)
     local robot = native.layout.grippers[station.effector].robot
+    local theta = axes and axes[native.layout.robots[robot].first]
     for _, wound in ipairs(problem and {} or native.windings(theta, robot)) do
       native.stand(wound, robot)
       local word, refused = rehearse(station.name, slot)
@@ -160,8 +205,7 @@ return function(native, tryout, flip_room)
 
   local function check_blade(station, gripper, name, missed)
     for _, slot in ipairs(slots_of(station)) do
-      native.reach(station.index, slot, native.layout.grippers[gripper].robot)
-      local word, problem = rehearse(station.name, slot, gripper)
+      local word, problem = try_slot(station, slot, gripper)
       if problem then
         missed(slot, word, reason_of(problem), name)
         break

@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs = ipairs
 
-return function(native, patterns, lookup, arm, player, targets, carrying, attempt)
+return function(native, patterns, lookup, player, targets, carrying, attempt)
   -- `attempt` is pcall, but for faults of a file of patterns: these are no verdict on the cell.
   local tryout = {}
 
@@ -23,7 +23,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying, attemp
   end
 
   -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
-  -- or another gripper (an index). Returns the word of the refused one and the error, or nil, nil and theta
+  -- or another gripper (an index). Returns the word of the refused one and the error, or nil, nil and the axes
   -- before the slot.
   function tryout.rehearse(station, slot, gripper)
     local can_get, got = attempt(plan, "get", station, slot, gripper)
@@ -34,7 +34,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying, attemp
     if not can_put then
       return "PUT", put
     end
-    return nil, nil, before_slot(got)[arm.first_axis(got.target.gripper)]
+    return nil, nil, before_slot(got)
   end
 
   -- Plans a PUT with this gripper that goes aside by its beams' result. Returns the error if it is refused, or nil.

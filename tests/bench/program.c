@@ -290,7 +290,7 @@ int main(int argc, char **argv) {
     count_each("three robots, a wafer", "tests/bench/three_robots.lua --brief --set wafers=", 2, 4, 1.1e9);
     count_whole("tool, instructions", "lua/examples/27_tool.lua", 7e9);
     time_run_of("run, start to end", "build/waferhand run lua/examples/01_transfer.lua >/dev/null", 0.01);
-    count_whole("run, start to end", "lua/examples/01_transfer.lua", 55e6);
+    count_whole("run, start to end", "lua/examples/01_transfer.lua", 42e6);
     time_page("tool, its page", "build/waferhand run lua/examples/27_tool.lua >/dev/null", 0.3);
     time_run_of("study, 10,000 trials",
                 "build/waferhand study lua/examples/07_study.lua --trials 10000 >/dev/null", 0.9);
