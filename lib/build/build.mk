@@ -197,13 +197,13 @@ $(B)/obj/%.o: %.cpp $(B)/flags
 $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o: FLAGS = $(PROGRAM_FLAGS) -I.
 $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o: $(B)/obj/%.o: $(B)/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
-# Motion control's files are compiled once, here. The name is WH_INNER_CHUNK's of script/sandbox.h.
+# Motion control's files are compiled once, here.
 $(B)/precompile: lib/build/precompile.c $(B)/flags
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(PROGRAM_FLAGS) $(CFLAGS) $(EXTRA) -o $@ $< $(LUA_ARCHIVE) $(LDFLAGS) -ldl -lm
 $(B)/precompiled/%.lua: lua/%.lua $(B)/precompile
 	@mkdir -p $(@D)
-	$(Q)$(B)/precompile /dev/null/$*.lua <$< >$@
+	$(Q)$(B)/precompile $< >$@
 $(B)/embedded_lua.c: lib/build/embed $(EMBEDDED_LUA) $(B)/sources
 	@lib/build/embed wh_embedded $(B)/precompiled/ $(EMBEDDED_LUA) >$@
 $(B)/embedded_page.c: lib/build/embed $(PAGE_SOURCES) $(B)/sources

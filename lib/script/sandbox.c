@@ -76,7 +76,13 @@ bool wh_sandbox_is_inner(const char *name) {
     return strncmp(name, WH_INNER_CHUNK, sizeof WH_INNER_CHUNK - 1) == 0;
 }
 
+/* The place that Lua names in code without names and lines. */
+#define NO_PLACE "?:-1: "
+
 const char *wh_sandbox_skip_inner(const char *text) {
+    if (strncmp(text, NO_PLACE, sizeof NO_PLACE - 1) == 0) {
+        return text + sizeof NO_PLACE - 1;
+    }
     const char *const colon = wh_sandbox_is_inner(text) ? strchr(text, ':') : NULL;
     if (colon == NULL) {
         return text;

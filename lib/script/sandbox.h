@@ -93,8 +93,8 @@ bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *re
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result);
 
-/* wh_sandbox_evaluate for what Lua's compiler has made of one of the library's own sources: it has its name
- * in it. Lua trusts such code, so it must not come from outside. */
+/* wh_sandbox_evaluate for what Lua's compiler has made of one of the library's own sources, without names and
+ * lines; `name` is its own. Lua trusts such code, so it must not come from outside. */
 bool wh_sandbox_evaluate_code(lua_State *L, const char *name, const void *code, size_t size,
                               wh_sandbox_result_t *result);
 
@@ -133,8 +133,8 @@ void wh_sandbox_module_place(lua_State *L, const char *path, char place[WH_SANDB
  * below it, so no user's path has such a name. */
 #define WH_INNER_CHUNK "/dev/null/"
 
-/* A message without the place at its beginning if that is in a chunk whose name begins with WH_INNER_CHUNK;
- * otherwise the whole message. */
+/* A message without the place at its beginning if that is in a chunk whose name begins with WH_INNER_CHUNK,
+ * or in code without names and lines; otherwise the whole message. */
 const char *wh_sandbox_skip_inner(const char *text);
 
 /* ------------------------------------------------------------------------------------------------- Limits */
