@@ -12,112 +12,29 @@ local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
 return function(native, lookup)
   local alarms = {}
 
-  local AT_SLOT, STATION = "GET PUT SWAP READY PATTERN", "GET PUT SWAP READY MAP TEACH PATTERN"
-  local PLANNED = STATION .. " LINE"
-  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
-    .. " PUMP WAIT_FOR CARRIER PORT TAKE_AWAY"
-  local BY_ROBOT = STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE"
-  local SETTING = " SET_STATION STATION"
-  local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
+  -- By the error's number: its name, how it is raised, and the set of commands; and all numbers. They are read when the
+  -- first fault asks.
+  local by_number, numbers
 
-  -- By the error's name: how it is raised, and the commands that can give it.
-  local HOW = {
-    BAD_VALVE = { "check", "VALVE" },
-    BAD_LIMITS = { "line", MOVING },
-    OUT_OF_REACH = { "check", PLANNED .. " SET_STATION" },
-    LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE SET_STATION" },
-    NOT_LEVEL = { "check", STATION },
-    NOT_ALONG_ARM = { "check", STATION .. SETTING },
-    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT OFFSET" .. SETTING },
-    NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
-    WAFER_MISSING = { "cause", "GET SWAP" },
-    NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
-    WAFER_ON_GRIPPER = { "cause", "GET SWAP" },
-    NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" .. SETTING },
-    AMBIGUOUS_ROBOT = { "check", BY_ROBOT .. SETTING },
-    NO_SUCH_ROBOT = { "check", BY_ROBOT .. SETTING },
-    NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
-    NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
-    BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES .. SETTING },
-    NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT" },
-    WAFER_LOST = { "cause", "PUT" },
-    DEADLOCK = { "check", STATION },
-    FLIP_TIMEOUT = { "cause", "FLIP" },
-    FLIP_NOT_CLAMPED = { "check", "FLIP" },
-    WRONG_FACE = { "check", "PUT SWAP" },
-    WRONG_SLOT = { "check", "GET SWAP" },
-    STOPPED = { "cause", STATION .. " HOME ROTATE EDGE_SCAN ALIGN MOVE FLIP LINE" },
-    OUT_OF_BUDGET = { "check", MOVING },
-    BUSY = { "line", MOVING },
-    NOT_TAUGHT = { "check", STATION .. " STATION" },
-    WAFER_ALREADY_THERE = { "check", "PUT" },
-    VACUUM_TIMEOUT = { "cause", "GET PUT SWAP" },
-    VACUUM_BEFORE_PICK = { "cause", "GET SWAP" },
-    NOT_HOMED = { "cause", STATION .. " MOVE FLIP LINE" },
-    WAFER_LOST_ON_WAY = { "cause", "PUT" },
-    WAFER_JAMMED = { "check", "GET SWAP" },
-    PLUNGER_STUCK = { "cause", "GET PUT SWAP" },
-    GRIP_TIMEOUT = { "cause", "GET SWAP" },
-    UNGRIP_TIMEOUT = { "cause", "PUT" },
-    SENSORS_DISAGREE = { "cause", "GET SWAP" },
-    COLLISION_AHEAD = { "check", PLANNED .. " MOVE FLIP" },
-    SLIP_AHEAD = { "check", PLANNED .. " MOVE FLIP HOME" },
-    BAD_SLOT = { "check", "GET PUT SWAP PATTERN" },
-    NOT_MAPPED = { "check", "GET PUT SWAP PATTERN" },
-    CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP PATTERN ALIGN" },
-    IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE" },
-    PINS_UP = { "check", "GET PUT SWAP READY PATTERN ROTATE EDGE_SCAN ALIGN TEACH" },
-    DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH PATTERN" },
-    DOOR_BLOCKED = { "check", "CLOSE" },
-    DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
-    PROCESS_RUNNING = { "check", "GET SWAP" },
-    CLEANING = { "check", "GET PUT SWAP" },
-    STATION_TIMEOUT = { "check", "PUMP WAIT_FOR PORT TAKE_AWAY" },
-    WRONG_PRESSURE = { "check", "GET PUT SWAP OPEN PUMP" },
-    BOTH_OPEN = { "check", "OPEN" },
-    DOOR_OPEN = { "check", "PUMP" },
-    PORT_NOT_OPEN = { "check", STATION },
-    PORT_ENTERED = { "check", "PORT TAKE_AWAY" },
-    NO_CARRIER = { "check", "CARRIER PORT TAKE_AWAY" },
-    CARRIER_THERE = { "check", "CARRIER" },
-    HANDSHAKE_TIMEOUT = { "check", "WAIT_FOR PORT TAKE_AWAY" },
-    NOT_IN_PHASE = { "check", "CONTINUE" },
-    NO_SUCH_SAVE = { "check", "RESTORE" },
-    NOTHING_TO_UNDO = { "check", "UNDO" },
-    NOT_RESTORED = { "line", "RESTORE UNDO" },
-    TOO_FEW_SAMPLES = { "check", "ALIGN TEACH" },
-    NO_NOTCH = { "check", "ALIGN TEACH" },
-    NOT_TOUCHED = { "check", "TEACH" },
-    TWO_NOTCHES = { "check", "ALIGN" },
-    OFF_SENSOR = { "check", "ALIGN" },
-    TOO_ECCENTRIC = { "check", "ALIGN" },
-    CENTRE_NOT_SURE = { "check", "ALIGN CALIBRATE TEACH" },
-    NOTCH_NOT_SURE = { "check", "ALIGN" },
-    BAD_SCAN = { "line", "ALIGN" },
-    RUN_OVER = { "line", MOVING },
-    NO_ANSWER = { "line", MOVING },
-    NO_POWER = { "check", BY_ROBOT },
-    BRAKES_SET = { "check", BY_ROBOT },
-    EMERGENCY_STOP = { "check", BY_ROBOT },
-    SERVO_ERROR = { "check", BY_ROBOT },
-    SOFT_LIMIT = { "check", PLANNED .. " CONTINUE RECOVER MOVE FLIP" },
-    WRONG_MODE = { "check", BY_ROBOT },
-  }
-
-  -- The manual's table is made of these: tests/end_to_end/tools/manual_tables.lua.
-  alarms.how, alarms.groups = HOW, { MOVING, STATION, QUERIES }
-
-  -- By the error's number: its name, how it is raised, and the set of commands.
-  local by_number, numbers = {}, {}
-  for name, how in pairs(HOW) do
-    local number, words = lookup.errors[name].number, {}
-    for word in how[2]:gmatch("%S+") do
-      words[word] = true
+  local function read_errors()
+    by_number, numbers = {}, {}
+    for name, how in pairs(native.module("mcs/alarm_errors.lua").how) do
+      local number, words = lookup.errors[name].number, {}
+      for word in how[2]:gmatch("%S+") do
+        words[word] = true
+      end
+      by_number[number] = { name = name, how = how[1], words = words }
+      numbers[#numbers + 1] = number
     end
-    by_number[number] = { name = name, how = how[1], words = words }
-    numbers[#numbers + 1] = number
+    table.sort(numbers)
   end
-  table.sort(numbers)
+
+  local function raised_by(number)
+    if not by_number then
+      read_errors()
+    end
+    return by_number[number]
+  end
 
   -- By robot: the broken part for its running or held command: { alarm = , fault = , opened = }. By task, if only a
   -- door or a flipper works.
@@ -127,7 +44,7 @@ return function(native, lookup)
   -- alarms.bearer() is that robot, or the task. lua/mcs/parts.lua sets all of them.
 
   function alarms.arm(error)
-    if not by_number[error] then
+    if not raised_by(error) then
       local text = "error: %s (expected the number of one that a command can answer: %s)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(error), table.concat(numbers, ", ")))
     end
@@ -139,7 +56,7 @@ return function(native, lookup)
   -- The first armed error that this command can give and that is raised in this way, or nil.
   local function find(word, how)
     for _, alarm in ipairs(native.alarms() or NONE) do
-      local raised = by_number[alarm.error]
+      local raised = raised_by(alarm.error)
       if raised.words[word] and raised.how == how then
         return alarm, raised
       end
@@ -148,7 +65,7 @@ return function(native, lookup)
 
   local function take(error_name)
     for _, alarm in ipairs(native.alarms() or NONE) do
-      if by_number[alarm.error].name == error_name then
+      if raised_by(alarm.error).name == error_name then
         native.disarm(alarm.number)
         return true
       end
@@ -204,9 +121,9 @@ return function(native, lookup)
     if not armed then
       return
     end
-    local bearer, stopped = alarms.bearer(), by_number[lookup.errors.STOPPED.number]
+    local bearer, stopped = alarms.bearer(), raised_by(lookup.errors.STOPPED.number)
     for _, alarm in ipairs(not stopping[bearer] and armed or NONE) do
-      if by_number[alarm.error] == stopped and stopped.words[text:match("^[%u_]+")] then
+      if raised_by(alarm.error) == stopped and stopped.words[text:match("^[%u_]+")] then
         stopping[bearer] = alarm.number
         native.stop_in(BEFORE_STOP)
         return
@@ -297,7 +214,7 @@ return function(native, lookup)
 
   local function check_centring(target)
     for _, alarm in ipairs(target.centre and native.alarms() or NONE) do
-      local raised = by_number[alarm.error]
+      local raised = raised_by(alarm.error)
       if OF_CENTRING[raised.name] then
         raise(alarm, raised)
       end
@@ -313,7 +230,7 @@ return function(native, lookup)
     local robot = alarms.robot()
     check_centring(target)
     for _, alarm in ipairs(not broken[robot] and native.alarms() or NONE) do
-      local raised = by_number[alarm.error]
+      local raised = raised_by(alarm.error)
       local cause = raised.words[word] and causes[raised.name] and causes[raised.name](half, target)
       if cause then
         local kind, gripper = cause[1], native.layout.grippers[cause[2]].name
@@ -334,7 +251,7 @@ return function(native, lookup)
   local function break_mechanism(error_name, word, fault)
     local bearer = alarms.bearer()
     for _, alarm in ipairs(not broken[bearer] and native.alarms() or NONE) do
-      local raised = by_number[alarm.error]
+      local raised = raised_by(alarm.error)
       if raised.name == error_name and raised.words[word] then
         broken[bearer] = { alarm = alarm, fault = native.fault(fault) }
         stand_still()

@@ -12,12 +12,7 @@
 local chapters = { ... }
 local words = dofile "lua/mcs/words.lua"
 
--- The module wants motion control's own functions, of which it calls none at first, and the errors by name.
-local errors = {}
-for _, status in ipairs(statuses) do
-  errors[status.name] = status
-end
-local alarms = dofile "lua/mcs/alarms.lua" ({}, { errors = errors })
+local alarms = dofile "lua/mcs/alarm_errors.lua"
 local NONE = ""
 
 -- Errors on purpose: what breaks, or for whom else a check is.
