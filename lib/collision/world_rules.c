@@ -101,28 +101,23 @@ static bool may_lie_in(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, 
                : support->kind == WH_PART_CHUCK && may_lie_on(cell, base_from_wafer, support->owner);
 }
 
-/* wh_cell_locate, which asks no station that the wafer is beside: most of them. */
+/* wh_cell_locate among the stations from the first to the last one that the wafer is not beside. */
 static bool locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place) {
-    wh_cell_t alone = *cell;
-    wh_real_t best = 0;
-    bool found = false;
-    for (size_t s = 0; s < cell->count; ++s) {
-        wh_place_t here;
-        alone.stations = &cell->stations[s];
-        alone.count = 1;
-        if (is_beside(cell, alone.stations, base_from_wafer) ||
-            !wh_cell_locate(&alone, base_from_wafer, &here)) {
-            continue;
-        }
-        const wh_real_t square = here.dx * here.dx + here.dy * here.dy + here.dz * here.dz;
-        if (!found || square < best) {
-            *place = here;
-            place->station = (int32_t)s;
-            best = square;
-            found = true;
-        }
+    size_t first = 0, end = cell->count;
+    while (first < end && is_beside(cell, &cell->stations[first], base_from_wafer)) {
+        ++first;
     }
-    return found;
+    while (end > first && is_beside(cell, &cell->stations[end - 1], base_from_wafer)) {
+        --end;
+    }
+    wh_cell_t near = *cell;
+    near.stations += first;
+    near.count = end - first;
+    if (!wh_cell_locate(&near, base_from_wafer, place)) {
+        return false;
+    }
+    place->station += (int32_t)first;
+    return true;
 }
 
 /* True if a wafer at this pose lies in the ledge's slot, or on the gripper's chuck, and not below its
