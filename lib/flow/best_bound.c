@@ -19,10 +19,6 @@
 
 #define MOST_VISITS 64
 
-static int64_t later(int64_t a, int64_t b) {
-    return a > b ? a : b;
-}
-
 static int64_t less(int64_t a, int64_t b) {
     return a < b ? a : b;
 }

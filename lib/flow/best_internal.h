@@ -23,6 +23,10 @@ typedef struct {
     int64_t taken_us[WH_BEST_PLACES];  /* the begin of the last doing that brought a wafer there */
 } node_t;
 
+static inline int64_t later(int64_t a, int64_t b) {
+    return a > b ? a : b;
+}
+
 /* Shared by all nodes. */
 typedef struct {
     const wh_flow_tool_t *tool;
@@ -40,5 +44,15 @@ int64_t wh_best_carry_us(const problem_t *problem, int32_t wafer, int32_t k);
 
 /* Fills in bound_us and rest_us. */
 void wh_best_bound(const problem_t *problem, node_t *node);
+
+/* The node's `kind`. Wafers of one lot in their first places are alike: they are taken in order. */
+uint64_t wh_best_kind(const problem_t *problem, const node_t *node);
+
+/* Puts the nodes in order of their bounds. */
+void wh_best_sort(node_t nodes[], size_t count);
+
+/* Drops each node from which nothing can go on that could not go on as early from another one of its kind.
+ * Returns how many are left. */
+size_t wh_best_drop_beaten(const problem_t *problem, node_t nodes[], size_t count);
 
 #endif
