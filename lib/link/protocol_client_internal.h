@@ -1,8 +1,11 @@
-/* Internals of motion control's side of the protocol: checks that nobody else commands. */
+/* Internals of motion control's side of the protocol: what it hears, and checks that nobody else commands. */
 #ifndef WH_LINK_PROTOCOL_CLIENT_INTERNAL_H
 #define WH_LINK_PROTOCOL_CLIENT_INTERNAL_H
 
 #include "protocol_client.h"
+
+/* True from the second slice of a free-running run on. Its first slice is in lockstep. */
+bool wh_protocol_client_is_free(const wh_protocol_client_t *client);
 
 /* Keeps the grippers' targets of the command that is about to be sent. */
 void wh_protocol_client_note_sent(wh_protocol_client_t *client);
