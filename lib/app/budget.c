@@ -36,18 +36,10 @@ static const wh_option_t options[] = {
     {"seed", 0, "S", "Which ones (default 1)", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed)},
     {"threads", 0, "N", "On so many threads (default: one for each processor)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, threads), 1, 1024},
-    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, run.json)},
-    {"set", 0, "NAME=VALUE",
-     "Hand script and layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
-    {"budget", 0, "N", "End a trial's script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
-     WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18},
-    {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, NULL}, {wh_run_trials_options, offsetof(arguments_t, run), NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "budget",

@@ -54,6 +54,18 @@ const wh_option_t wh_run_options[] = {
      .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6},
     {0}};
 
+const wh_option_t wh_run_trials_options[] = {
+    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
+     .variable = offsetof(wh_run_arguments_t, json)},
+    {"set", 0, "NAME=VALUE",
+     "Hand script and layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
+     WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, parameters)},
+    {"budget", 0, "N", "End a trial's script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
+     WH_OPTION_REAL, .variable = offsetof(wh_run_arguments_t, budget), 1, 1e18},
+    {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6},
+    {0}};
+
 const wh_option_t wh_run_files_options[] = {
     {"report", 'o', "FILE", "Write a page to look at and to mail: the cell in motion, plots and tables",
      WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, page)},

@@ -59,6 +59,9 @@ typedef struct {
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
 
+/* Those of subcommands that play a script many times: --json, parameters and limits; likewise. */
+extern const wh_option_t wh_run_trials_options[];
+
 /* --counted, --strict and --verify, for a run in this process: also into a wh_run_arguments_t, with their
  * check. */
 extern const wh_option_t wh_run_counting_options[];

@@ -49,19 +49,11 @@ static const wh_option_t options[] = {
      "Write a line for each trial into FILE: if it was ok, where the wafers end up, and what was drawn",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, csv)},
     {"counted", 0, NULL, WH_RUN_COUNTED_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
-    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, run.json)},
-    {"set", 0, "NAME=VALUE",
-     "Hand script and layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
-    {"budget", 0, "N", "End a trial's script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
-     WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18},
-    {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6},
     {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
+    {wh_run_trials_options, offsetof(arguments_t, run), NULL, NULL},
     {wh_run_files_options, offsetof(arguments_t, run.files),
      "For the one trial that --trial plays, and --report of a whole study:", NULL},
     {0}};
