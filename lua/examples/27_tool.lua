@@ -67,7 +67,7 @@ while taken < WAFERS do
     wait(0.1)
   end
 end
-join(vacuum)
+join(vacuum)   await "IN is empty"   await "OUT is empty"
 
 for wafer = 1, WAFERS do
   expect_offset(("W%02d"):format(wafer), "TO", wafer, 0, 0, 1e-6)
