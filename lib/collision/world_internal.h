@@ -316,6 +316,16 @@ void wh_world_settle(const wh_look_t *look) WH_SYMBOL(wh_world_settle);
 /* Makes the mover's list of things at rest again. */
 void wh_world_list_anew(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_anew);
 
+/* How far from the mover its list looks, mm, if that is not too much for its room. */
+static inline wh_real_t wh_world_margin(const wh_mover_t *mover) {
+    return WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
+}
+
+/* The way that a list which looks so far is valid for. */
+static inline wh_real_t wh_world_reach(const wh_mover_t *mover, wh_real_t margin) {
+    return margin - mover->motion - WH_CLEARANCE_RANGE;
+}
+
 /* Does so if it has moved as far as the list is valid. A list that was empty within more than its margin is
  * empty again; its next one is due when it would be. */
 static inline void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
@@ -323,8 +333,7 @@ static inline void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
         return;
     }
     if (mover->clear > 0) {
-        const wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
-        mover->reach = margin - mover->motion - WH_CLEARANCE_RANGE;
+        mover->reach = wh_world_reach(mover, wh_world_margin(mover));
         ++world->counters.relisted;
     } else {
         wh_world_list_anew(world, mover);

@@ -85,12 +85,12 @@ static wh_box_t box_before(const wh_world_t *world, wh_mover_t *mover) {
  * for the range of clearances, the list has the things that can be touched in this slice, and it is for
  * this slice only. */
 static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *box, int32_t found[]) {
-    wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
+    wh_real_t margin = wh_world_margin(mover);
     const wh_real_t least = mover->motion + WH_NEAR_LEAST + WH_GAP_TOUCH;
     for (;;) {
         const wh_box_t grown = wh_box_grown(box, margin);
         const size_t count = wh_tree_find(&world->tree, &grown, found, WH_NEAR_CAPACITY);
-        mover->reach = margin - mover->motion - WH_CLEARANCE_RANGE;
+        mover->reach = wh_world_reach(mover, margin);
         mover->crowd = count > WH_NEAR_CAPACITY ? count : 0;
         if (mover->crowd == 0 || margin <= least) {
             return mover->crowd > 0 ? WH_NEAR_CAPACITY : count;
@@ -103,8 +103,7 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
  * of the way that it finds are empty, too. */
 static void look_ahead(const wh_world_t *world, wh_mover_t *mover, const wh_box_t *box) {
     int32_t found[1];
-    const wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
-    const wh_box_t grown = wh_box_grown(box, margin + AHEAD);
+    const wh_box_t grown = wh_box_grown(box, wh_world_margin(mover) + AHEAD);
     if (wh_tree_find(&world->tree, &grown, found, 1) == 0) {
         mover->clear = AHEAD - mover->motion - WH_GAP_TOUCH;
     }

@@ -17,9 +17,11 @@ return function(native, patterns, arm, tasks)
   -- The fields of a request that may be a target.
   local AIMS = { "target", "enters", "note" }
 
-  local function are_shipped(pattern)
+  -- A pattern of ours, while none of the three is a script's own, in a command without shares of speed or acceleration.
+  local function may_be_kept(pattern)
     local get, put, swap = patterns.get, patterns.put, patterns.swap
     return get == shipped.get and put == shipped.put and swap == shipped.swap and (pattern == get or pattern == put or pattern == swap)
+      and not tasks.current().share
   end
 
   local function is_plain(target)
@@ -52,13 +54,13 @@ return function(native, patterns, arm, tasks)
   -- The plan of a target's kind, ready to be played, or nil.
   function kinds.find(pattern, target)
     local list = list_at(target)
-    if not list then
+    if not list or not may_be_kept(pattern) then
       return nil
     end
     local robot, front = tasks.current().robot or 1, arm.state().front
     for _, kind in ipairs(list) do
       if kind.plan.pattern == pattern and kind.robot == robot and kind.station == (front and front.station)
-        and kind.gripper == (front and front.gripper) and not tasks.current().share and is_alike(kind, target)
+        and kind.gripper == (front and front.gripper) and is_alike(kind, target)
         and native.take_kind(kind.data, robot) then
         return plan_of(kind, target)
       end
@@ -103,7 +105,7 @@ return function(native, patterns, arm, tasks)
   -- Keeps a plan that was just made and not begun.
   function kinds.keep(plan)
     local target, robot = plan.target, tasks.current().robot or 1
-    if not are_shipped(plan.pattern) or tasks.current().share or not is_plain(target.get or target) or not is_plain(target.put or target) then
+    if not may_be_kept(plan.pattern) or not is_plain(target.get or target) or not is_plain(target.put or target) then
       return
     end
     local data, front = native.keep_kind(robot), arm.state().front

@@ -111,8 +111,8 @@ class Live(unittest.TestCase):
         return before
 
     def test_slow_reader_disturbs_nobody(self):
-        """Three whose connections are full, and ten that read: the latter get all, the run keeps its pace and its memory. Who wakes
-        gets all that counts as well."""
+        """Three readers sleep until their connections are full, and ten read. The ten get all; the run keeps its pace and its memory.
+        A sleeper that wakes gets all that counts, too."""
         served = self.serve("run", "tests/bench/hour.lua", "--budget", "1e12", "--page", "0", "--rate", "100")
         first = served.until(lambda got: got["state"]["pace"])
         alone = first["state"]["pace"]
